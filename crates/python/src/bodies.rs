@@ -15,6 +15,12 @@ use crate::field::Field;
 use crate::moment::there;
 use crate::simulation::{Simulation, Standing};
 
+/// A body that is not among those with these names.
+pub fn no_body<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> PyErr {
+    let known = names.collect::<Vec<_>>().join("`, `");
+    PyKeyError::new_err(format!("there is no body `{name}`; there are `{known}`"))
+}
+
 /// The bodies of a simulation, by name.
 #[pyclass(module = "piola", frozen, mapping)]
 pub struct Bodies {
@@ -33,10 +39,8 @@ impl Bodies {
 impl Bodies {
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Body> {
         let names = &self.simulation.get().bodies;
-        let number = names.iter().position(|known| known == name).ok_or_else(|| {
-            let known = names.join("`, `");
-            PyKeyError::new_err(format!("there is no body `{name}`; there are `{known}`"))
-        })?;
+        let number = names.iter().position(|known| known == name);
+        let number = number.ok_or_else(|| no_body(name, names.iter().map(String::as_str)))?;
         let simulation = self.simulation.clone_ref(py);
         let name = Some(name.to_owned());
         Ok(Body { simulation, moment: self.moment, number: Some(number), name })

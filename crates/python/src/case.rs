@@ -3,11 +3,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use ::toml::Value;
 use piola::case::{self, Level, LoadOptions, Problems, Session, load, parse_in};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arrays::array;
+use crate::bodies::no_body;
 use crate::display::{preformatted, seconds, table};
 use crate::errors::{Fault, case_error, faults, file_error, guard};
 use crate::functions::{Registry, Shared, make_threads, refuse_inside};
@@ -30,8 +33,9 @@ enum Source {
 /// Case(table, *, folder=".", variant=None, level="case")
 ///
 /// table: a dict with the keys of a case file (docs/case-file.md). NumPy arrays and numbers, tuples and paths
-/// are accepted, functions of any of x, y, z and t in place of expressions, and a `Cloud` in place of the shape of a
-/// body. It is turned into the text of a case file, which `case.toml` shows and messages refer to.
+/// are accepted, functions of any of x, y, z and t in place of expressions, a `Cloud` in place of the shape of a body,
+/// and arrays in place of its initial `velocity` and `displacement`, of shape (particles, D), and `pressure`, of shape
+/// (particles,), with rows in the order of `positions`. It is turned into the text of a case file, which `case.toml` shows and messages refer to.
 /// folder: where files named in the case are searched for.
 /// variant: name of a variant, or of a member of a sweep (`NAME.3`).
 /// level: "case", or the settings "coarse" or "paper" of the case.
@@ -45,7 +49,9 @@ enum Source {
 #[pyclass(module = "piola")]
 pub struct Case {
     source: Source,
+    /// What the case is read with, but for the changes.
     options: LoadOptions,
+    changes: Vec<Change>,
     registry: Registry,
 }
 
@@ -63,14 +69,16 @@ impl Case {
             ))
         })?;
         let options = LoadOptions { variant, level, ..LoadOptions::default() };
-        Ok(Self { source, options, registry })
+        Ok(Self { source, options, changes: Vec::new(), registry })
     }
 
     /// Reads the case as it is now, without the GIL, and what the functions of its run share.
     fn read(&self, py: Python<'_>) -> PyResult<(Result<case::Case, Problems>, Arc<Shared>)> {
         let (functions, shared) = self.registry.for_a_run();
-        let clouds = self.registry.clouds.clone();
-        let options = LoadOptions { functions, clouds, ..self.options.clone() };
+        let Registry { clouds, arrays, .. } = &self.registry;
+        let (clouds, arrays) = (clouds.clone(), arrays.clone());
+        let overrides = self.changes.iter().map(Change::text).collect();
+        let options = LoadOptions { overrides, functions, clouds, arrays, ..self.options.clone() };
         let read = guard(py, || match &self.source {
             Source::File(path) => load(path, &options),
             Source::Text { text, folder } => parse_in(folder, text, DICT, &options),
@@ -90,18 +98,48 @@ impl Case {
     }
 }
 
-/// Drops the last override of a key that is set once more, if nothing set since can depend on it: something within it, what is
+/// A key that has been set, or removed.
+struct Change {
+    path: String,
+    /// Nothing for a key that has been removed.
+    value: Option<Value>,
+}
+
+impl Change {
+    /// As an override of the command line.
+    fn text(&self) -> String {
+        let value = self.value.as_ref().map(Value::to_string).unwrap_or_default();
+        format!("{}={value}", self.path)
+    }
+
+    /// Whether it gives a name, by which later paths may find something.
+    fn gives_a_name(&self) -> bool {
+        fn has_name(value: &Value) -> bool {
+            match value {
+                Value::Table(table) => {
+                    table.iter().any(|(key, value)| key == "name" || has_name(value))
+                }
+                Value::Array(values) => values.iter().any(has_name),
+                _ => false,
+            }
+        }
+        self.path.ends_with(".name") || self.value.as_ref().is_some_and(has_name)
+    }
+
+    /// Whether it sets something within a key, or appends to it.
+    fn is_within(&self, path: &str) -> bool {
+        self.path.strip_prefix(path).is_some_and(|rest| rest.starts_with(['.', '+']))
+    }
+}
+
+/// Drops the last change of a key that is set once more, if nothing since can depend on it: something within it, what is
 /// found by a name that it gives, or places in a list that something has been removed from.
-fn forget(overrides: &mut Vec<String>, path: &str) {
-    let of_same = |text: &String| text.split_once('=').is_some_and(|(known, _)| known == path);
-    let Some(last) = overrides.iter().rposition(of_same) else { return };
-    let depends = |text: &String| {
-        let rest = text.strip_prefix(path).unwrap_or_default();
-        rest.starts_with(['.', '+']) || text.ends_with('=')
-    };
-    let is_needed = overrides[last].contains("name") || overrides[last..].iter().any(depends);
+fn forget(changes: &mut Vec<Change>, path: &str) {
+    let Some(last) = changes.iter().rposition(|known| known.path == path) else { return };
+    let depends = |later: &Change| later.value.is_none() || later.is_within(path);
+    let is_needed = changes[last].gives_a_name() || changes[last..].iter().any(depends);
     if !is_needed && !path.ends_with('+') {
-        overrides.remove(last);
+        changes.remove(last);
     }
 }
 
@@ -158,8 +196,8 @@ impl Case {
     }
 
     /// Sets the key that `path` leads to, as `--set` does: `body.water.spacing`, `load.0.acceleration`. A path with `+`
-    /// at its end appends to a list; the value None removes the key. A value may contain functions and clouds, as in
-    /// `Case`. Returns the case itself.
+    /// at its end appends to a list; the value None removes the key. A value may contain functions, clouds and
+    /// arrays, as in `Case`. Returns the case itself.
     fn set<'py>(
         mut slf: PyRefMut<'py, Self>,
         path: &str,
@@ -168,15 +206,15 @@ impl Case {
         if path.contains('=') {
             return Err(PyValueError::new_err(format!("this is not the path of a key: {path:?}")));
         }
-        let text = match value.is_none() {
-            true => String::new(),
-            false => toml::value(value, path, &mut slf.registry)?.to_string(),
+        let value = match value.is_none() {
+            true => None,
+            false => Some(toml::value(value, path, &mut slf.registry)?),
         };
         // What takes a key away needs it there.
-        if !text.is_empty() {
-            forget(&mut slf.options.overrides, path);
+        if value.is_some() {
+            forget(&mut slf.changes, path);
         }
-        slf.options.overrides.push(format!("{path}={text}"));
+        slf.changes.push(Change { path: path.to_owned(), value });
         Ok(slf)
     }
 
@@ -188,6 +226,25 @@ impl Case {
             (Err(problems), _) => Err(problems),
         };
         Ok(built.err().map(|problems| faults(&problems)).unwrap_or_default())
+    }
+
+    /// Positions at the start of the particles of the body `name`, in m: an array of shape (particles, D), in the order of
+    /// creation. Arrays of initial fields have their rows in this order; of a `Cloud` it is its own.
+    ///
+    /// Raises CaseError, and KeyError if the case has no such body.
+    fn positions<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        refuse_inside()?;
+        let (case, _) = self.model(py)?;
+        let names = || case.bodies.iter().map(|body| body.name.value.as_str());
+        let number =
+            names().position(|known| known == name).ok_or_else(|| no_body(name, names()))?;
+        let positions = guard(py, || {
+            make_threads();
+            case.positions(number)
+        })?;
+        let positions = positions.map_err(|problems| case_error(py, &problems))?;
+        let count = positions.len() / case.dimension;
+        array(py, positions, &[count, case.dimension])
     }
 
     /// What a run will do, without running it: creates the particles and times two steps.
@@ -249,7 +306,7 @@ impl Case {
             Source::File(path) => path.display().to_string(),
             Source::Text { .. } => "of a dict".to_owned(),
         };
-        let set = self.options.overrides.iter().map(|text| format!(", {text}"));
+        let set = self.changes.iter().map(|change| format!(", {}", change.text()));
         format!("<Case {source}{}>", set.collect::<String>())
     }
 

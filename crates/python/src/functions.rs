@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, Once, PoisonError, RwLock};
 use std::thread;
 
 use piola::boundaries::SpaceTime;
-use piola::case::{Clouds, Functions};
+use piola::case::{Arrays, Clouds, Functions};
 use piola::geometry::PointCloud;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -96,11 +96,12 @@ impl Shared {
     }
 }
 
-/// The functions and the clouds of a case, in the order in which they came.
+/// The functions, clouds and arrays of a case, in the order in which they came.
 #[derive(Default)]
 pub struct Registry {
     functions: Vec<Arc<Given>>,
     pub clouds: Clouds,
+    pub arrays: Arrays,
 }
 
 /// A function as it was given.
@@ -158,6 +159,11 @@ impl Registry {
     /// Takes points in, and returns what stands for them.
     pub fn add_cloud(&mut self, cloud: &Arc<PointCloud>) -> String {
         format!("@{}", self.clouds.add(cloud))
+    }
+
+    /// Takes a value for each particle in, and returns what stands for them.
+    pub fn add_array(&mut self, values: Vec<f64>) -> String {
+        format!("@{}", self.arrays.add(&values.into()))
     }
 }
 

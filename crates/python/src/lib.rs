@@ -15,6 +15,7 @@ mod display;
 mod errors;
 mod field;
 mod functions;
+mod initial;
 mod moment;
 mod plan;
 mod run;

@@ -7,12 +7,13 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 
 use crate::cloud::Cloud;
 use crate::functions::Registry;
+use crate::initial;
 
 /// How deep values may be nested; the deepest key of a case file is far above.
 const MAX_DEPTH: usize = 64;
 
-/// A dict as a table. What is wrong with keys and values of a case is left to the reader of cases. Functions and
-/// clouds go to `functions`, and leave their names in the table.
+/// A dict as a table. What is wrong with keys and values of a case is left to the reader of cases. Functions, clouds and
+/// arrays of initial fields go to `functions`, and leave their names in the table.
 ///
 /// # Errors
 /// A key is no text, or a value is none that a case file can have.
@@ -55,6 +56,9 @@ fn value_at(
 ) -> PyResult<Value> {
     if depth > MAX_DEPTH {
         return Err(PyValueError::new_err(format!("nested too deeply: {}", within(path))));
+    }
+    if let Some(names) = initial::array(value, path, functions)? {
+        return Ok(names);
     }
     // True is an int, too.
     if let Ok(flag) = value.cast::<PyBool>() {
@@ -109,6 +113,7 @@ pub fn kind(value: &Bound<'_, PyAny>) -> String {
     value.get_type().name().map_or_else(|_| "this".to_owned(), |name| format!("`{name}`"))
 }
 
-fn within(path: &str) -> String {
+/// Where a value is.
+pub fn within(path: &str) -> String {
     if path.is_empty() { "in the case itself".to_owned() } else { format!("in `{path}`") }
 }

@@ -89,6 +89,9 @@ def test_a_key_that_is_set_again_is_set_once(case):
         case.set("time.end", spacing).set("body.water.spacing", spacing)
     assert repr(case) == "<Case of a dict, time.end=0.25, body.water.spacing=0.25>"
     assert case.check().bodies[0]["spacing"] == [0.25, 0.25]
+    # Whatever words are in a value.
+    case.set("title", "a column without a name").set("title", "a column")
+    assert "without" not in repr(case)
 
 
 def test_what_depends_on_a_key_that_is_set_again_stays(case):

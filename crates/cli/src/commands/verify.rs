@@ -65,11 +65,13 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
         count(rows.len() as u64, "case"),
         duration(seconds)
     );
-    if skipped > 0 {
+    let is_interrupted = stop.load(Ordering::Relaxed);
+    // An interrupted one has not looked at all cases, and does not know how many more there are.
+    if skipped > 0 && !is_interrupted {
         text += &format!("{} with `--long`\n", count(skipped as u64, "more check"));
     }
     terminal::print(&format!("{}\n{text}", render(&rows)))?;
-    if stop.load(Ordering::Relaxed) {
+    if is_interrupted {
         terminal::report("interrupted: what was not finished has neither passed nor failed\n");
         return Ok(Exit::Interrupted);
     }

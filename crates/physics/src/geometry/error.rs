@@ -87,6 +87,12 @@ pub enum GeometryError {
         /// The combination, with its article.
         what: &'static str,
     },
+    /// The distance from the boundary is not known.
+    #[error(
+        "a layer follows the boundary of one shape: expected a surface, an outline, a polygon, a box, a ball, an annulus or a \
+         cylinder, or one of them turned; make a layer of each shape and combine the layers"
+    )]
+    NoLayer,
     /// A normal has no direction.
     #[error(
         "the normal is {normal}, expected finite components, not all of them 0",

@@ -41,7 +41,7 @@ pub use particles::Particles;
 pub use points::{PointsError, PointsFault, from_points};
 pub(crate) use probe::Probe;
 pub use region::Region;
-pub use shape::{Shape, ball_volume};
+pub use shape::{LayerSide, Shape, ball_volume};
 pub use surface::Surface;
 pub use surroundings::surroundings;
 pub(crate) use way_out::slope;

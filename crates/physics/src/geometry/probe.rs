@@ -33,7 +33,7 @@ impl<'a, const D: usize> Probe<'a, D> {
     /// Depths in a shape at places in the ball of radius `reach` m around a point, as far as only what is in the ball counts.
     pub fn around(shape: &'a Shape<D>, point: &Vector<D>, reach: f64) -> Self {
         let mut known: Vec<Known<'a>> = Vec::new();
-        shape.depth_by(point, &mut |facets, place| {
+        shape.depth_by(point, &mut |facets, place, _| {
             // A surface that is there twice may be in two places.
             if facets.soundness().is_closed() {
                 let twice = known.iter().position(|other| std::ptr::eq(other.facets, facets));
@@ -50,11 +50,11 @@ impl<'a, const D: usize> Probe<'a, D> {
     /// around a point it is nearer to 0: as far from facets as their boxes are, and from those in the ball alone.
     pub fn depth(&mut self, point: &Vector<D>, reach: f64) -> f64 {
         let known = &mut self.known;
-        self.shape.depth_by(point, &mut |facets, place| {
+        self.shape.depth_by(point, &mut |facets, place, further| {
             let known = Known::of(known, facets);
             let clear = match &known.local {
-                Some(local) => local.clear(place).min(reach),
-                None => facets.distance_within(place, reach).unwrap_or(reach),
+                Some(local) if further == 0.0 => local.clear(place).min(reach),
+                _ => facets.distance_up_to(place, reach + further),
             };
             if known.side(place, clear).is_inside { clear } else { -clear }
         })
@@ -63,10 +63,14 @@ impl<'a, const D: usize> Probe<'a, D> {
     /// Whether a place with finite coordinates lies in the shape or on its boundary.
     pub fn contains(&mut self, point: &Vector<D>) -> bool {
         let known = &mut self.known;
-        let depth = self.shape.depth_by(point, &mut |facets, place| {
+        let depth = self.shape.depth_by(point, &mut |facets, place, further| {
             let side = Known::of(known, facets).side(place, 0.0);
             // It may be on the surface if it is not known to be off it.
-            let distance = if side.is_off { 1.0 } else { facets.distance(place) };
+            let distance = match side.is_off {
+                true if further == 0.0 => 1.0,
+                true => facets.distance_up_to(place, 2.0 * further),
+                false => facets.distance(place),
+            };
             if side.is_inside { distance } else { -distance }
         });
         depth >= 0.0

@@ -1,5 +1,7 @@
 //! Closed regions of space that particles fill.
 
+mod layer;
+
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -9,6 +11,12 @@ use super::error::{axis_name, finite, positive};
 use super::polygon;
 use super::{Facets, GeometryError};
 use crate::{Tensor, Vector};
+
+use layer::Layer;
+pub use layer::LayerSide;
+
+/// The depth in a surface of facets from outside, at a place, where it has to be known by this many m further than that of the shape.
+pub(super) type OfSurface<'f, 'a> = dyn FnMut(&'a Facets, &Vector<3>, f64) -> f64 + 'f;
 
 /// A region of space with its boundary.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +52,7 @@ enum Kind<const D: usize> {
         about: Vector<D>,
         rotation: Tensor<D>,
     },
+    Layer(Layer<D>),
     Union(Vec<Shape<D>>),
     Intersection(Vec<Shape<D>>),
     Difference {
@@ -222,14 +231,14 @@ impl<const D: usize> Shape<D> {
     /// A depth below the boundary in m: 0 on it, negative outside, and nowhere further from 0 than
     /// the boundary is from `point`.
     pub fn depth(&self, point: &Vector<D>) -> f64 {
-        self.depth_by(point, &mut |facets, place| facets.depth(place))
+        self.depth_by(point, &mut |facets, place, _| facets.depth(place))
     }
 
     /// The depth with that in surfaces of facets from outside.
     pub(super) fn depth_by<'a>(
         &'a self,
         point: &Vector<D>,
-        of_surface: &mut dyn FnMut(&'a Facets, &Vector<3>) -> f64,
+        of_surface: &mut OfSurface<'_, 'a>,
     ) -> f64 {
         match &self.0 {
             Kind::Box { min, max } => {
@@ -252,10 +261,11 @@ impl<const D: usize> Shape<D> {
                 let along = |[min, max]: [f64; 2]| (point[D - 1] - min).min(max - point[D - 1]);
                 ends.map_or(depth, |ends| depth.min(along(ends)))
             }
-            Kind::Surface(facets) => of_surface(facets, &in_space(point)),
+            Kind::Surface(facets) => of_surface(facets, &in_space(point), 0.0),
             Kind::Turned { of, about, rotation } => {
                 of.depth_by(&(rotation.transpose() * (point - about) + about), of_surface)
             }
+            Kind::Layer(layer) => layer.depth_by(point, of_surface),
             Kind::Union(shapes) => shapes
                 .iter()
                 .map(|shape| shape.depth_by(point, of_surface))
@@ -306,6 +316,7 @@ impl<const D: usize> Shape<D> {
                 let (middle, half) = (rotation * (middle - about) + about, rotation.abs() * half);
                 (middle - half, middle + half)
             }
+            Kind::Layer(layer) => layer.bounding_box(),
             Kind::Union(shapes) => join(shapes, |(a, b), (c, d)| (a.inf(&c), b.sup(&d))),
             Kind::Intersection(shapes) => join(shapes, |(a, b), (c, d)| (a.sup(&c), b.inf(&d))),
             Kind::Difference { from, .. } => from.bounding_box(),
@@ -326,6 +337,7 @@ impl<const D: usize> Shape<D> {
             }
             Kind::Surface(facets) => facets.volume(),
             Kind::Turned { of, .. } => of.exact_volume(),
+            Kind::Layer(_) => None,
             Kind::Union(shapes) | Kind::Intersection(shapes) => match shapes.as_slice() {
                 [only] => only.exact_volume(),
                 _ => None,
@@ -372,6 +384,7 @@ impl<const D: usize> Shape<D> {
     pub(super) fn surfaces(&self) -> Vec<&Facets> {
         match &self.0 {
             Kind::Surface(facets) => vec![facets],
+            Kind::Layer(layer) => layer.of.surfaces(),
             Kind::Union(shapes) | Kind::Intersection(shapes) => {
                 shapes.iter().flat_map(Self::surfaces).collect()
             }

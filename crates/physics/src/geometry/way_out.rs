@@ -164,7 +164,15 @@ impl<const D: usize> Shape<D> {
         let least = found.iter().map(|(place, _)| distance(place)).fold(f64::INFINITY, f64::min);
         // Another part of the boundary is nearer, or the point is outside.
         if depth < -tiny || (least - depth.max(0.0)).abs() > tiny {
-            return None;
+            let is_far = |thickness: f64| (thickness - least - depth).abs() <= tiny && depth > tiny;
+            return self.thickness().filter(|&thickness| is_far(thickness)).and_then(|_| {
+                // The far face of a layer is beyond the point as seen from the near one.
+                let ways: Vec<_> =
+                    found.iter().map(|(place, _)| (point - place) / distance(place)).collect();
+                let ways = apart(&ways);
+                let ends = ways.iter().map(|way| point + way * depth);
+                is_within(ends, bounds).then(|| Faces::new(ways.clone(), depth))
+            });
         }
         let mut ways = Vec::with_capacity(found.len());
         for (place, normal) in found {

@@ -32,8 +32,8 @@ pub enum ColumnError {
     NotSettable {
         /// The name.
         name: &'static str,
-        /// Those that can be.
-        settable: &'static [&'static str],
+        /// Those that can be, of all particles that were asked for.
+        settable: Vec<&'static str>,
     },
     /// Too few numbers, or too many.
     #[error("the field `{name}` has {expected} numbers, not {got}")]
@@ -140,13 +140,17 @@ impl Session {
         let field = self.described(name)?;
         let (name, scheme) = (field.name, self.executor.scheme.as_ref());
         let place = |&particle: &usize| {
-            let settable = scheme.settable(particle);
             let stretch = scheme.stretch(field, &(particle..particle + 1));
-            stretch
-                .filter(|_| settable.contains(&name))
-                .ok_or(ColumnError::NotSettable { name, settable })
+            stretch.filter(|_| scheme.settable(particle).contains(&name))
         };
-        let places = particles.iter().map(place).collect::<Result<Vec<_>, _>>()?;
+        let of_all = || {
+            let mut settable =
+                particles.first().map_or(&[][..], |&first| scheme.settable(first)).to_vec();
+            settable.retain(|name| particles.iter().all(|&it| scheme.settable(it).contains(name)));
+            ColumnError::NotSettable { name, settable }
+        };
+        let places: Option<Vec<_>> = particles.iter().map(place).collect();
+        let places = places.ok_or_else(of_all)?;
         let components = field.kind.components(self.case.dimension);
         let (expected, got) = (components * places.len(), values.len());
         if got != expected {

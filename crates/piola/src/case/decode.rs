@@ -2,7 +2,7 @@
 
 use super::diagnostics::Problem;
 use super::document::{Node, Table, Value};
-use super::functions::Functions;
+use super::functions::{Arrays, Functions};
 use super::outline::table_of;
 use super::record::{Datum, Record};
 use super::source::{Located, Place, SourceText};
@@ -29,6 +29,8 @@ pub(super) struct Context<'a> {
     pub parameters: Vec<(String, Option<f64>)>,
     /// Functions that may stand for expressions; any in a record.
     pub functions: Option<&'a Functions>,
+    /// Arrays with a value for each particle of a body, where its initial state has expressions.
+    pub arrays: Option<&'a Arrays>,
     /// What was found so far.
     pub problems: Vec<Problem>,
     /// What is left out without being wrong, in sentences.

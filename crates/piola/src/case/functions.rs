@@ -1,4 +1,4 @@
-//! What a program gives to a case under a name: functions in place of expressions, points in place of files.
+//! What a program gives to a case under a name: functions and arrays in place of expressions, points in place of files.
 
 use std::fmt;
 use std::sync::Arc;
@@ -18,6 +18,11 @@ pub type Functions = Named<dyn SpaceTime>;
 /// Clouds of points by name. Where a shape of the kind `points` has a file, `"@NAME"` is the cloud of that name.
 /// To resume a run with clouds, the same ones have to be given; others are refused.
 pub type Clouds = Named<PointCloud>;
+
+/// Arrays by name, with a value for each particle of a body in the order of creation. Where the initial state of a body has an
+/// expression, `"@NAME"` is the array of that name. To resume a run with arrays, the same ones have to be given; others
+/// are refused.
+pub type Arrays = Named<[f64]>;
 
 /// Objects by name.
 pub struct Named<T: ?Sized>(Vec<Entry<T>>);
@@ -46,18 +51,35 @@ impl<T: ?Sized> Named<T> {
 impl Clouds {
     /// Adds a cloud under a name derived from its numbers, and returns the name.
     pub fn add(&mut self, cloud: &Arc<PointCloud>) -> String {
-        let sum = numbers_of(cloud, Sha256::new()).finalize();
-        let digits: String = sum.iter().take(6).map(|byte| format!("{byte:02x}")).collect();
-        let name = format!("cloud_{digits}");
-        self.insert(name.as_str(), Arc::clone(cloud));
+        self.insert_by(numbers_of(cloud, Sha256::new()), "cloud", cloud)
+    }
+}
+
+impl Arrays {
+    /// Adds an array under a name derived from its numbers, and returns the name.
+    pub fn add(&mut self, values: &Arc<[f64]>) -> String {
+        self.insert_by(with_numbers(Sha256::new(), values.iter()), "array", values)
+    }
+}
+
+impl<T: ?Sized> Named<T> {
+    /// Adds something under a name derived from a sum of its numbers.
+    fn insert_by(&mut self, sum: Sha256, kind: &str, one: &Arc<T>) -> String {
+        let digits = sum.finalize();
+        let digits: String = digits.iter().take(6).map(|byte| format!("{byte:02x}")).collect();
+        let name = format!("{kind}_{digits}");
+        self.insert(name.as_str(), Arc::clone(one));
         name
     }
 }
 
 /// A sum that knows of the positions and volumes of a cloud.
 pub(super) fn numbers_of(cloud: &PointCloud, sum: Sha256) -> Sha256 {
-    let numbers = cloud.positions().iter().chain(cloud.volumes());
-    numbers.fold(sum, |sum, number| sum.chain_update(number.to_le_bytes()))
+    with_numbers(sum, cloud.positions().iter().chain(cloud.volumes()))
+}
+
+fn with_numbers<'a>(sum: Sha256, mut numbers: impl Iterator<Item = &'a f64>) -> Sha256 {
+    numbers.by_ref().fold(sum, |sum, number| sum.chain_update(number.to_le_bytes()))
 }
 
 impl<T: ?Sized> Clone for Named<T> {

@@ -9,7 +9,7 @@ use self::sweeps::run_traits;
 use super::catalogue;
 use super::decode::{AXES, Context};
 use super::diagnostics::Problem;
-use super::functions::{Clouds, Functions, MARK};
+use super::functions::{Arrays, Clouds, Functions, MARK};
 use super::model::{
     Body, Case, Checkpoint, Domain, Level, PaperSetting, Parameter, Preset, Scheme, StepControl,
     Time, Variant,
@@ -52,6 +52,8 @@ pub(super) struct Setting<'a> {
     pub functions: Option<&'a Functions>,
     /// Clouds of points that the case may name, as functions.
     pub clouds: Option<&'a Clouds>,
+    /// Arrays of initial values that the case may name, as functions.
+    pub arrays: Option<&'a Arrays>,
 }
 
 impl Setting<'_> {

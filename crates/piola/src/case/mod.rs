@@ -50,7 +50,7 @@ pub use diagnostics::{Problem, Problems};
 use document::{Node, Table, Value};
 pub use expression::Expression;
 pub use finished::Finished;
-pub use functions::{Clouds, Functions, Named};
+pub use functions::{Arrays, Clouds, Functions, Named};
 use interpret::Setting;
 pub use model::{Case, Level};
 use overrides::Override;
@@ -80,6 +80,8 @@ pub struct LoadOptions {
     pub functions: Functions,
     /// What `"@NAME"` stands for in place of the file of a shape of the kind `points`.
     pub clouds: Clouds,
+    /// What `"@NAME"` stands for in place of an expression of an initial state.
+    pub arrays: Arrays,
 }
 
 /// Reads the case file at `path`.
@@ -129,8 +131,16 @@ fn assemble(
     let tree = parsed.map_err(|problems| Problems::new(sources.clone(), problems))?;
     let variant = options.variant.as_deref().filter(|name| *name != "base");
     let is_changed = !options.overrides.is_empty();
-    let (functions, clouds) = (Some(&options.functions), Some(&options.clouds));
-    let wanted = Setting { variant, level: options.level, folder, is_changed, functions, clouds };
+    let LoadOptions { functions, clouds, arrays, level, .. } = options;
+    let wanted = Setting {
+        variant,
+        level: *level,
+        folder,
+        is_changed,
+        functions: Some(functions),
+        clouds: Some(clouds),
+        arrays: Some(arrays),
+    };
     let case = read(&tree, &sources, options, wanted).and_then(|(case, changed)| {
         if !is_changed {
             others(&tree, &sources, options, wanted, &case)?;
@@ -189,8 +199,15 @@ fn read(
 fn recorded(text: &str, variant: Option<&str>) -> Result<Case, Problems> {
     let sources: Arc<[SourceText]> =
         Arc::new([SourceText { name: "the case as run".to_owned(), text: text.to_owned() }]);
-    let (level, folder, functions, clouds) = (Level::Case, None, None, None);
-    let setting = Setting { variant, level, folder, is_changed: true, functions, clouds };
+    let setting = Setting {
+        variant,
+        level: Level::Case,
+        folder: None,
+        is_changed: true,
+        functions: None,
+        clouds: None,
+        arrays: None,
+    };
     let tree = document::parse(text);
     let case = tree.and_then(|tree| check(&tree, &sources, setting, Vec::new()));
     let case = case.map_err(|problems| Problems::new(sources, problems))?;
@@ -215,6 +232,7 @@ fn check(
         dimension,
         parameters: Vec::new(),
         functions: setting.functions,
+        arrays: setting.arrays,
         problems,
         remarks: Vec::new(),
     };

@@ -156,6 +156,15 @@ impl Case {
         &self.sources
     }
 
+    /// The positions at the start of the particles of the body with this number in m, in the order of creation, one after the
+    /// other: that of clouds of points, and of arrays of initial values. There is none of a body that the case does not have.
+    ///
+    /// # Errors
+    /// What is wrong with the body or the domain.
+    pub fn positions(&self, body: usize) -> Result<Vec<f64>, Problems> {
+        super::assembly::positions(self, body)
+    }
+
     /// A problem with the value at `place`: a sentence, a few words for the underlined text, and
     /// what the user can do about it.
     pub fn problem_at(
@@ -262,9 +271,7 @@ impl Case {
 
     /// All expressions of initial fields, loads and boundaries, for checks over the whole case.
     pub fn expressions(&self) -> impl Iterator<Item = &Expression> {
-        let initial = self.bodies.iter().flat_map(|body| {
-            body.initial.velocity.iter().chain(std::iter::once(&body.initial.pressure))
-        });
+        let initial = self.bodies.iter().flat_map(|body| body.initial.expressions());
         let loads = self.loads.iter().flat_map(|load| load.kind.components());
         let boundaries = self.boundaries.iter();
         let boundaries = boundaries.flat_map(|wall| {

@@ -131,7 +131,7 @@ fn value(kind: &Kind) -> String {
 
 fn names(variables: Variables) -> &'static str {
     match variables {
-        Variables::Position => "x, y, z",
+        Variables::Position | Variables::AtStart => "x, y, z",
         Variables::PositionAndTime => "x, y, z, t",
     }
 }

@@ -116,7 +116,9 @@ pub enum Kind {
 pub enum Variables {
     /// As many of `x`, `y`, `z` as the case has dimensions.
     Position,
-    /// Those and `t`.
+    /// Those, or arrays with a value for each particle in place of expressions.
+    AtStart,
+    /// `x`, `y`, `z` and `t`.
     PositionAndTime,
 }
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::model::*;
 use super::*;
 
+mod arrays;
 mod clouds;
 mod devices;
 mod faults;
@@ -146,7 +147,7 @@ fn reads_loads_boundaries_and_regions() {
     );
     let moving = driver.velocity[0].as_ref().unwrap();
     assert_eq!((moving.eval([0.0; 3], 2.0), moving.rate([0.0; 3], 2.0)), (4.0, 4.0));
-    assert_eq!(case.expressions().count(), 3 * 3 + 4 + 3);
+    assert_eq!(case.expressions().count(), 3 * 5 + 4 + 3);
 }
 
 #[test]

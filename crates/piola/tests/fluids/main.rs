@@ -11,6 +11,7 @@ mod escapes;
 #[path = "../support/fields.rs"]
 mod fields;
 mod held;
+mod layers;
 mod levels;
 mod open;
 mod operators;

@@ -122,7 +122,12 @@ impl Facets {
         self.tree.nearest(point, reach).map(|(place, _)| (place - point).norm())
     }
 
-    /// The same, less than zero outside. Through a hole it jumps.
+    /// The same, but no more than `most` m.
+    pub(super) fn distance_up_to(&self, point: &Vector<3>, most: f64) -> f64 {
+        self.distance_within(point, most).unwrap_or(most)
+    }
+
+    /// The distance in m from the nearest facet, less than zero outside. Through a hole it jumps.
     pub fn depth(&self, point: &Vector<3>) -> f64 {
         let distance = self.distance(point);
         if self.winding(point) > 0.5 { distance } else { -distance }

@@ -1,6 +1,7 @@
 mod concentric;
 mod facets;
 mod fill;
+mod layer;
 mod points;
 mod probe;
 mod region;

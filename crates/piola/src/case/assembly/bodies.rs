@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::overlap::overlaps;
+use super::start;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Body, Case};
 use crate::case::source::{Located, Place};
@@ -51,15 +52,10 @@ pub(super) fn particles<const D: usize>(
     let mut reports = Vec::new();
     let mut problems = Vec::new();
     for (number, body) in (0u32..).zip(&case.bodies) {
-        let is_packed = body.lattice.kind == model::LatticeKind::Packed;
-        let made = match &body.shape.value {
-            shape if is_packed && !shape.is_from_file() => {
-                packed(case, body, domain).map(|(made, packing)| (made, Some(packing)))
-            }
-            shape => unpacked(case, body, domain, shape).map(|made| (made, None)),
-        };
+        let made = made(case, body, domain);
         let added = made.and_then(|(report, packing)| {
             let (particles, volume) = (report.particles.len(), report.total_volume);
+            start::check(case, body, particles)?;
             all.append(report.particles, number).map_err(|error| refuse(case, body, &error)).map(
                 |()| BodyReport {
                     name: body.name.value.clone(),
@@ -81,6 +77,21 @@ pub(super) fn particles<const D: usize>(
         problems = overlaps(case, domain, &all);
     }
     if problems.is_empty() { Ok((all, reports)) } else { Err(problems) }
+}
+
+/// The particles of a body in the order of creation, and how well they are packed if they are.
+pub(super) fn made<const D: usize>(
+    case: &Case,
+    body: &Body,
+    domain: &Domain<D>,
+) -> Result<(FillReport<D>, Option<Packing>), Problem> {
+    let is_packed = body.lattice.kind == model::LatticeKind::Packed;
+    match &body.shape.value {
+        shape if is_packed && !shape.is_from_file() => {
+            packed(case, body, domain).map(|(made, packing)| (made, Some(packing)))
+        }
+        shape => unpacked(case, body, domain, shape).map(|made| (made, None)),
+    }
 }
 
 fn refuse(case: &Case, body: &Body, error: &GeometryError) -> Problem {
@@ -338,11 +349,24 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
         tell(format!("{pairs}{}", first.unwrap_or_default()));
     }
     for body in &case.bodies {
-        // What is cut out of a body is no part of it.
-        let model::Shape::Surface(surface) = &body.shape.value else { continue };
-        let Some(facets) = surface.facets.get() else { continue };
         let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
-        if let Some((thickness, spot)) = facets.thinner_than(THIN * spacing) {
+        let thinnest = match &body.shape.value {
+            // What is cut out of a body is no part of it.
+            model::Shape::Surface(surface) => {
+                let thinnest = surface.facets.get().and_then(|it| it.thinner_than(THIN * spacing));
+                thinnest.map(|(thickness, spot)| {
+                    (thickness, format!(" where it is thinnest, behind {spot}"))
+                })
+            }
+            // That of a wall that does not hold has a warning of its own.
+            model::Shape::Layer { thickness, .. }
+                if body.wall.is_none() && *thickness < THIN * spacing =>
+            {
+                Some((*thickness, String::new()))
+            }
+            _ => None,
+        };
+        if let Some((thickness, place)) = thinnest {
             let layers = thickness / spacing;
             let thin = match layers < 0.05 {
                 true => "has no thickness".to_owned(),
@@ -353,7 +377,7 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
                 false => "",
             };
             told.push(format!(
-                "the body `{}` {thin} where it is thinnest, behind {spot}, less than {THIN}: make the spacing \
+                "the body `{}` {thin}{place}, less than {THIN}: make the spacing \
                  smaller{other}",
                 *body.name
             ));
@@ -389,6 +413,9 @@ pub(super) fn shape<const D: usize>(
         model::Shape::Surface(surface) => facets_of(surface).and_then(Shape::surface),
         model::Shape::Turned { of, angle, about, axis } => {
             shape(case, body, of)?.turned(*angle, vector(about), (*axis).into())
+        }
+        model::Shape::Layer { of, thickness, side } => {
+            shape(case, body, of)?.layer(*thickness, *side)
         }
         model::Shape::Union(parts) => Shape::union(all(parts)?),
         model::Shape::Intersection(parts) => Shape::intersection(all(parts)?),

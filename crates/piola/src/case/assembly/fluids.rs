@@ -1,9 +1,10 @@
 //! Particles turned into a weakly compressible fluid between walls.
 
 use super::bodies::{self, BodyReport};
+use super::start;
 use super::{
-    Built, initial, kernel, levels, loads, openings, probes, row_sizes, row_statistics, selections,
-    tanks, walls,
+    Built, kernel, levels, loads, openings, probes, row_sizes, row_statistics, selections, tanks,
+    walls,
 };
 use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
@@ -134,8 +135,9 @@ pub(super) fn prepare<const D: usize>(
     if let Some(shape) = &shape {
         let counts = |place: &Vector<D>| counts.counts(place);
         warnings.extend(tanks::warnings(case, shape, &particles, (&faces, counts), support));
+        warnings.extend(walls::behind_layers(case, &particles, support)?);
     }
-    let initial = initial(case, &particles);
+    let initial = start::initial(case, &reports, &particles);
     if materials(case).is_none() {
         warnings.extend(compression(&fluid(case)?, &initial));
     }

@@ -137,6 +137,14 @@ fn check(case: &Case, settings: &model::TransportVelocity) -> Result<(), Vec<Pro
             "remove `shifting`",
         );
     }
+    let is_array = |body: &&model::Body| body.initial.expressions().any(|it| it.array().is_some());
+    if let Some(body) = case.bodies.iter().find(is_array) {
+        let message = format!(
+            "the initial state of the body `{}` is an array, which has no values for particles of other spacings",
+            *body.name
+        );
+        return refuse(&message, "use expressions or functions, or remove `refine`");
+    }
     let moves = |it: &&model::Boundary| {
         it.wave_maker.is_some() || it.velocity.iter().any(|component| component.is_some())
     };

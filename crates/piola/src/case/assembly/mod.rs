@@ -15,6 +15,7 @@ mod printed;
 mod probes;
 mod selections;
 mod solids;
+mod start;
 mod tanks;
 mod walls;
 mod world;
@@ -33,7 +34,7 @@ use crate::neighbors::{Domain, NeighborError, NeighborStatistics, spatial_order}
 use crate::observe::{Line, Probe};
 use crate::operators::{GradientOperator, Support};
 use crate::schemes::upwind::{
-    ImplicitSettings, Initial, Material, Settings, Upwind, UpwindError, UpwindInput,
+    ImplicitSettings, Material, Settings, Upwind, UpwindError, UpwindInput,
 };
 use crate::schemes::{InputError, Scheme};
 use crate::time::{CheckpointPolicy, Integrator, IntegratorKind, StepControl};
@@ -74,6 +75,23 @@ pub(super) struct Built {
     pub warnings: Vec<String>,
     /// What has been chosen for the user.
     pub notes: Vec<String>,
+}
+
+/// The positions of the particles of a body in m, in the order of creation, one after the other.
+pub(super) fn positions(case: &Case, body: usize) -> Result<Vec<f64>, Problems> {
+    match case.dimension {
+        1 => positions_in::<1>(case, body),
+        2 => positions_in::<2>(case, body),
+        _ => positions_in::<3>(case, body),
+    }
+    .map_err(|problems| case.refuse(with_surfaces(case, problems)))
+}
+
+fn positions_in<const D: usize>(case: &Case, body: usize) -> Result<Vec<f64>, Vec<Problem>> {
+    let domain = domain::<D>(case)?;
+    let Some(body) = case.bodies.get(body) else { return Ok(Vec::new()) };
+    let (made, _) = bodies::made(case, body, &domain).map_err(|problem| vec![problem])?;
+    Ok(made.particles.position.iter().flat_map(|x| x.iter().copied()).collect())
 }
 
 fn build_in<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> {
@@ -201,7 +219,7 @@ fn build_upwind<const D: usize>(
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
-    let scheme = upwind(case, settings, particles, support, &mut problems);
+    let scheme = upwind(case, settings, (particles, &bodies), support, &mut problems);
     match scheme {
         Some(scheme) if problems.is_empty() => Ok((
             Box::new(scheme),
@@ -233,7 +251,7 @@ fn domain<const D: usize>(case: &Case) -> Result<Domain<D>, Vec<Problem>> {
 fn upwind<const D: usize>(
     case: &Case,
     settings: &model::Upwind,
-    particles: Particles<D>,
+    (particles, reports): (Particles<D>, &[BodyReport]),
     support: Support<D>,
     problems: &mut Vec<Problem>,
 ) -> Option<Upwind<D>> {
@@ -242,7 +260,7 @@ fn upwind<const D: usize>(
         problems.extend(found);
         [0.0; 2]
     });
-    let initial = initial(case, &particles);
+    let initial = start::initial(case, reports, &particles);
     let prescribed = selections::prescribed(case, &particles, problems);
     let body_forces = loads::body_forces(case);
     let correction = *settings.correction;
@@ -308,31 +326,6 @@ fn materials(case: &Case) -> Vec<Material> {
     let of =
         |material: &model::Material| Material { density: material.density(), law: law(material) };
     case.bodies.iter().map(|body| of(&body.material)).collect()
-}
-
-fn initial<const D: usize>(case: &Case, particles: &Particles<D>) -> Initial<D> {
-    let rows = || particles.position.iter().zip(&particles.body);
-    let body = |number: u32| &case.bodies[number as usize].initial;
-    Initial {
-        velocity: at_start(case, particles, |initial| &initial.velocity),
-        pressure: rows()
-            .map(|(x, &number)| body(number).pressure.eval(crate::boundaries::padded(x), 0.0))
-            .collect(),
-    }
-}
-
-/// An initial vector of each particle.
-fn at_start<const D: usize>(
-    case: &Case,
-    particles: &Particles<D>,
-    components: impl Fn(&model::Initial) -> &[super::expression::Expression],
-) -> Vec<crate::Vector<D>> {
-    let of = |(x, &body): (&crate::Vector<D>, &u32)| {
-        let (place, all) =
-            (crate::boundaries::padded(x), components(&case.bodies[body as usize].initial));
-        crate::Vector::from_fn(|k, _| all[k].eval(place, 0.0))
-    };
-    particles.position.iter().zip(&particles.body).map(of).collect()
 }
 
 /// A support that is neither the narrow one nor wide enough to be smooth is worth a word.

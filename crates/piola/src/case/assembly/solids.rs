@@ -8,7 +8,8 @@ use super::loads::{self, LoadedSurface};
 use super::mirrors::{holes, mirrors, whole_weights};
 use super::overlap::touching;
 use super::selections::Held;
-use super::{Built, at_start, integrator_kind, kernel, probes, row_statistics, selections};
+use super::start::at_start;
+use super::{Built, integrator_kind, kernel, probes, row_statistics, selections};
 use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
@@ -126,8 +127,8 @@ pub(super) fn build<const D: usize>(
             dissipation: *settings.dissipation,
             gradients,
         },
-        displacement: at_start(case, &particles, |initial| &initial.displacement),
-        velocity: at_start(case, &particles, |initial| &initial.velocity),
+        displacement: at_start(case, &reports, &particles, |initial| &initial.displacement),
+        velocity: at_start(case, &reports, &particles, |initial| &initial.velocity),
         body_forces: loads::body_forces(case),
         holes: holes(case),
         kernel,

@@ -5,6 +5,7 @@ use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
+use crate::coordinates;
 use crate::geometry::{Faces, Particles, Shape};
 use crate::schemes::transport_velocity::Wall;
 
@@ -35,7 +36,8 @@ pub(super) fn faces<const D: usize>(
     if !is_wall.contains(&true) {
         return Ok((faces, None));
     }
-    let (mut shapes, moving) = (Vec::new(), moving(case)?);
+    // The walls that stay, with their numbers.
+    let (mut fixed, moving) = (Vec::new(), moving(case)?);
     let mut bounds = None::<(Vector<D>, Vector<D>)>;
     for (number, (body, is_wall)) in case.bodies.iter().zip(&is_wall).enumerate() {
         let (low, high) = match (&body.shape.value, is_wall) {
@@ -53,7 +55,7 @@ pub(super) fn faces<const D: usize>(
                     bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
                 let ends = shape.bounding_box();
                 if *is_wall && body.system.is_none() {
-                    shapes.push(shape);
+                    fixed.push((number as u32, shape));
                 }
                 ends
             }
@@ -62,7 +64,17 @@ pub(super) fn faces<const D: usize>(
         bounds = Some((least.inf(&low), most.sup(&high)));
     }
     let Some(bounds) = bounds else { return Ok((faces, None)) };
-    let walls = Shape::union(shapes).ok();
+    let shapes = fixed.iter().map(|(_, shape)| shape.clone());
+    let walls = Shape::union(shapes.collect()).ok();
+    // A layer holds what is in front of the boundary that it follows, and reaches out of the bounds behind that.
+    let extent = (bounds.1 - bounds.0).norm();
+    let own = fixed.iter().enumerate().filter_map(|(index, (number, shape))| {
+        let thick = shape.thickened(extent);
+        let mut shapes: Vec<_> = fixed.iter().map(|(_, shape)| shape.clone()).collect();
+        (thick != *shape).then(|| shapes[index] = thick)?;
+        Some((*number, Shape::union(shapes).ok()?))
+    });
+    let own: Vec<(u32, Shape<D>)> = own.collect();
     crate::parallel::for_each_chunk(&mut faces, |first, rows| {
         for (offset, row) in rows.iter_mut().enumerate() {
             let (x, body) = (&particles.position[first + offset], particles.body[first + offset]);
@@ -81,11 +93,42 @@ pub(super) fn faces<const D: usize>(
                     None => shape.ways_out(x, layer, &bounds),
                 };
             } else if let (Some(walls), true) = (&walls, is_wall[body as usize]) {
-                *row = walls.ways_out(x, layer, &bounds);
+                let own = own.iter().find(|(number, _)| *number == body);
+                *row = own.map_or(walls, |(_, shape)| shape).ways_out(x, layer, &bounds);
             }
         }
     });
     Ok((faces, walls))
+}
+
+/// A warning of fluid behind the far face of a layer that is a wall, closer than the support of the kernel in m.
+pub(super) fn behind_layers<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    support: f64,
+) -> Result<Vec<String>, Vec<Problem>> {
+    let mut warnings = Vec::new();
+    let is_wall = |a: usize| case.bodies[particles.body[a] as usize].wall.is_some();
+    let fluid: Vec<usize> = (0..particles.len()).filter(|&a| !is_wall(a)).collect();
+    for body in case.bodies.iter().filter(|body| body.wall.is_some() && body.system.is_none()) {
+        let own: Shape<D> =
+            bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
+        let thick = own.thickened(support);
+        if thick == own {
+            continue;
+        }
+        let place = |a: usize| (particles.position[a], 0.25 * particles.spacing[a]);
+        // In the layer itself is no fluid: bodies that overlap have been refused.
+        if let Some(found) = thick.first_deeper(fluid.len(), |index| place(fluid[index])) {
+            warnings.push(format!(
+                "the wall `{}` is a layer, which holds fluid at the boundary that it follows, and there is fluid behind its \
+                 far face, at {} m: describe it by two shapes and their `difference`",
+                *body.name,
+                coordinates(particles.position[fluid[found]].as_slice())
+            ));
+        }
+    }
+    Ok(warnings)
 }
 
 /// Doubles the wall particles of thin bodies of other systems, so that each side has its own: fluid on one

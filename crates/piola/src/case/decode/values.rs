@@ -132,7 +132,14 @@ impl Context<'_> {
     fn expression(&mut self, name: &str, variables: Variables, node: &Node) -> Option<Expression> {
         match &node.value {
             Value::Text(text) if text.starts_with(MARK) => {
-                self.function(name, text, variables, node.place)
+                let array = match (variables, self.arrays) {
+                    (Variables::AtStart, Some(known)) => known.get(&text[MARK.len_utf8()..]),
+                    _ => None,
+                };
+                match array {
+                    Some(values) => Some(Expression::of_particles(text, values.clone())),
+                    None => self.function(name, text, variables, node.place),
+                }
             }
             Value::Text(text) => {
                 let time = variables == Variables::PositionAndTime;

@@ -148,6 +148,7 @@ enum Form {
     Constant(f64),
     Variable(Arc<Program>),
     Outside(Outside),
+    Array(Arc<[f64]>),
 }
 
 impl Expression {
@@ -181,6 +182,20 @@ impl Expression {
         Self { text: text.into(), form: Form::Outside(Outside(function)) }
     }
 
+    /// An array with a value for each particle of a body in the order of creation, which `text` names. It has no value at a
+    /// position.
+    pub fn of_particles(text: &str, values: Arc<[f64]>) -> Self {
+        Self { text: text.into(), form: Form::Array(values) }
+    }
+
+    /// The array, if it is one.
+    pub fn array(&self) -> Option<&Arc<[f64]>> {
+        match &self.form {
+            Form::Array(values) => Some(values),
+            _ => None,
+        }
+    }
+
     /// The text as the user wrote it.
     pub fn text(&self) -> &str {
         &self.text
@@ -190,7 +205,7 @@ impl Expression {
     pub fn as_constant(&self) -> Option<f64> {
         match self.form {
             Form::Constant(value) => Some(value),
-            Form::Variable(_) | Form::Outside(_) => None,
+            Form::Variable(_) | Form::Outside(_) | Form::Array(_) => None,
         }
     }
 
@@ -200,6 +215,7 @@ impl Expression {
             Form::Constant(_) => false,
             Form::Variable(program) => program.depends_on(variable),
             Form::Outside(function) => function.depends_on(variable),
+            Form::Array(_) => variable != Variable::T,
         }
     }
 
@@ -210,12 +226,13 @@ impl Expression {
 
     /// Its value at a position in m and a time in s.
     ///
-    /// NaN outside its domain, as for `sqrt(x)` at `x = -1`: the caller has to check.
+    /// NaN outside its domain, as for `sqrt(x)` at `x = -1`, and of an array: the caller has to check.
     pub fn eval(&self, position: [f64; 3], time: f64) -> f64 {
         match &self.form {
             Form::Constant(value) => *value,
             Form::Variable(program) => program.eval(position, time),
             Form::Outside(function) => function.0.value(position, time),
+            Form::Array(_) => f64::NAN,
         }
     }
 
@@ -235,6 +252,7 @@ impl Expression {
             Form::Constant(_) => 0.0,
             Form::Variable(program) => program.derivative(by, position, time),
             Form::Outside(function) => function.derivative(by, position, time),
+            Form::Array(_) => f64::NAN,
         }
     }
 }

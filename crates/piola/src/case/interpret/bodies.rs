@@ -12,7 +12,7 @@ use crate::case::model::{
     Body, Initial, Lattice, LatticeKind, LatticeOrigin, Material, PlaneState, Region, Shape,
     Stiffness, Surface,
 };
-use crate::geometry::{Arrangement, CloudPoints, CloudSpec, CloudVolumes};
+use crate::geometry::{Arrangement, CloudPoints, CloudSpec, CloudVolumes, LayerSide};
 
 /// The keys that give the stiffness of a material, of which one is needed.
 const STIFFNESSES: [&str; 3] = ["bulk_modulus", "wave_speed", "young_modulus"];
@@ -197,6 +197,19 @@ impl Reader<'_, '_> {
                 let about = about.map_or_else(|| vec![0.0; self.dimension], |about| about.value);
                 Shape::Turned { of: Box::new(of?), angle: number(record, "angle")?, about, axis }
             }
+            "layer" => {
+                let of = record.record("of").and_then(|of| self.shape(of))?;
+                if of.is_composed() {
+                    let message = "a layer follows the boundary of one shape, not of several or of another layer";
+                    let help = "make a layer of each shape, and combine the layers";
+                    return self.refuse(Problem::new(of.place, message, "this shape").help(help));
+                }
+                let side = match record.text("side")?.as_str() {
+                    "inside" => LayerSide::Inside,
+                    _ => LayerSide::Outside,
+                };
+                Shape::Layer { of: Box::new(of), thickness: number(record, "thickness")?, side }
+            }
             "union" => Shape::Union(self.shapes(record, "of")?),
             "intersection" => Shape::Intersection(self.shapes(record, "of")?),
             "difference" => {
@@ -318,6 +331,7 @@ impl Reader<'_, '_> {
             false => Some(vec![Expression::constant(0.0); self.dimension]),
         };
         Some(Initial {
+            place: record.place,
             velocity: components("velocity")?,
             displacement: components("displacement")?,
             pressure: record.expression("pressure")?,

@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use super::{Material, Opening, Wall};
 use crate::case::expression::Expression;
-use crate::case::source::Located;
-use crate::geometry::{Arrangement, CloudSpec, Facets, PointCloud};
+use crate::case::source::{Located, Place};
+use crate::geometry::{Arrangement, CloudSpec, Facets, LayerSide, PointCloud};
 
 /// The space that the particles live in.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +115,15 @@ pub enum Shape {
         /// The axis, of length 1: z in 2D.
         axis: [f64; 3],
     },
+    /// The layer along the boundary of a shape that is no combination.
+    Layer {
+        /// The shape.
+        of: Box<Located<Shape>>,
+        /// Its thickness in m.
+        thickness: f64,
+        /// Where it is.
+        side: LayerSide,
+    },
     /// What lies in any of the shapes. Not empty.
     Union(Vec<Located<Shape>>),
     /// What lies in all of the shapes. Not empty.
@@ -167,6 +176,15 @@ impl Shape {
         }
     }
 
+    /// Whether it is made of several shapes, or is a layer of one, as it is or turned.
+    pub fn is_composed(&self) -> bool {
+        match self {
+            Self::Turned { of, .. } => of.is_composed(),
+            Self::Layer { .. } => true,
+            _ => !self.parts().is_empty(),
+        }
+    }
+
     /// The surfaces from files in it.
     pub fn surfaces(&self) -> Vec<&Surface> {
         match self {
@@ -184,7 +202,7 @@ impl Shape {
             Self::Difference { from, remove } => {
                 std::iter::once(&from.value).chain(remove.iter().map(|cut| &cut.value)).collect()
             }
-            Self::Turned { of, .. } => vec![&of.value],
+            Self::Turned { of, .. } | Self::Layer { of, .. } => vec![&of.value],
             _ => Vec::new(),
         }
     }
@@ -194,6 +212,7 @@ impl Shape {
         match self {
             Self::Points { file }
             | Self::Mesh { file, .. }
+            | Self::Outline { file, .. }
             | Self::Surface(Surface { file, .. }) => vec![file],
             _ => self.parts().into_iter().flat_map(Self::files).collect(),
         }
@@ -237,15 +256,24 @@ pub enum LatticeOrigin {
     Cells,
 }
 
-/// State of a body at the start, as expressions of the reference position.
+/// State of a body at the start, as expressions of the reference position or arrays of its particles.
 #[derive(Clone, Debug)]
 pub struct Initial {
+    /// Where it is in the case.
+    pub place: Place,
     /// Velocity in m/s.
     pub velocity: Vec<Expression>,
     /// Displacement in m.
     pub displacement: Vec<Expression>,
     /// Pressure in Pa, positive in compression.
     pub pressure: Expression,
+}
+
+impl Initial {
+    /// All expressions.
+    pub fn expressions(&self) -> impl Iterator<Item = &Expression> {
+        self.velocity.iter().chain(&self.displacement).chain(std::iter::once(&self.pressure))
+    }
 }
 
 /// A region that selects particles by their reference position.

@@ -102,6 +102,7 @@ impl Case {
                 relax: 0,
             },
             initial: Initial {
+                place: body.initial.place,
                 velocity: zero(),
                 displacement: zero(),
                 pressure: Expression::constant(0.0),

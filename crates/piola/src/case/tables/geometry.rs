@@ -263,21 +263,21 @@ static INITIAL: TableSpec = TableSpec {
     keys: &[
         key(
             "velocity",
-            Kind::Expressions(Variables::Position),
+            Kind::Expressions(Variables::AtStart),
             "m/s",
             Derived("0"),
             "one expression per component",
         ),
         key(
             "displacement",
-            Kind::Expressions(Variables::Position),
+            Kind::Expressions(Variables::AtStart),
             "m",
             Derived("0"),
             "one expression per component; for the scheme `total_lagrangian`",
         ),
         key(
             "pressure",
-            Kind::Expression(Variables::Position),
+            Kind::Expression(Variables::AtStart),
             "Pa",
             Default("0.0"),
             "initial pressure, positive in compression",

@@ -143,6 +143,28 @@ pub(super) static SHAPE: TaggedSpec = TaggedSpec {
             ],
         },
         KindSpec {
+            name: "layer",
+            meaning: "the layer of a given thickness along the boundary of another shape: the wall of a vessel or the skin of a body from the same file. As a wall it holds what is on the other side of that boundary; nothing may be behind its far face",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "of",
+                    Kind::Tagged(&SHAPE),
+                    "",
+                    Required,
+                    "the shape: any but a combination, points, a mesh or another layer",
+                ),
+                key("thickness", Kind::Number(Interval::POSITIVE), "m", Required, "its thickness"),
+                key(
+                    "side",
+                    Kind::Name(LAYER_SIDES),
+                    "",
+                    Default("\"outside\""),
+                    "on which side of the boundary of the shape it is",
+                ),
+            ],
+        },
+        KindSpec {
             name: "union",
             meaning: "points in any of several shapes",
             dimensions: &[1, 2, 3],
@@ -183,6 +205,11 @@ pub(super) static SHAPE: TaggedSpec = TaggedSpec {
         },
     ],
 };
+
+const LAYER_SIDES: Choices = choices(&[
+    choice("outside", "around the shape, with rounded edges"),
+    choice("inside", "in the shape"),
+]);
 
 /// A file of a shape.
 const FILE: KeySpec =
