@@ -93,30 +93,37 @@ fn fluids_move_what_their_tables_have() {
     assert!((1.3..1.6).contains(&(candidates / neighbors)), "{candidates} beside {neighbors}");
 }
 
-/// In 3D a gradient and its arm take six coefficients of a pair, and forces six and a stiffness.
+/// In 3D a plain gradient takes three coefficients of a pair, and forces three and a stiffness; a consistent one has three
+/// more, and a second tension.
 #[test]
 fn total_lagrangian_solids_move_what_their_tables_have() {
-    let mut session = session("dual-support/free-vibration", &[]);
-    let neighbors = session.view("neighbors", None).expect("it is a field");
-    let seen = groups_of(neighbors.numbers().iter().map(|neighbors| *neighbors as usize));
-    let scheme = &*session.scheme();
-    // Those that see a particle pull at it, too.
-    let met = groups(scheme);
-    // Displacement, two sums of coefficients, shape, stiffness, volume and mixture are read; the gradient and two tensions
-    // are written.
-    let own = (3.0 + 6.0 + 9.0 + 1.0 + 1.0 + 9.0 + 18.0) * NUMBER + 4.0;
-    let rows = 8.0 + seen * (8.0 * 4.0 + 8.0 * 6.0 * NUMBER);
     let displacement = 3.0 * NUMBER;
-    let strains = traffic(scheme, "strains");
-    assert_close(&strains, [own, rows + seen * 8.0 * displacement, own + rows]);
-    let own = (18.0 + 3.0 + 15.0 + 3.0) * NUMBER;
-    let rows = 8.0 + met * (8.0 * 4.0 + 8.0 * 7.0 * NUMBER);
-    let forces = traffic(scheme, "forces");
-    let tension = 18.0 * NUMBER;
-    assert_close(&forces, [own, rows + met * 8.0 * (displacement + tension), own + rows]);
+    for (sums, gradients) in [(1.0, "'plain'"), (2.0, "'patch_consistent'")] {
+        let set = format!("scheme.gradients={gradients}");
+        let mut session = session("dual-support/free-vibration", &[&set]);
+        let neighbors = session.view("neighbors", None).expect("it is a field");
+        let seen = groups_of(neighbors.numbers().iter().map(|neighbors| *neighbors as usize));
+        let scheme = &*session.scheme();
+        // Displacement, two sums of coefficients, shape, stiffness, volume and mixture are read; gradient and tensions are
+        // written.
+        let tension = sums * 9.0 * NUMBER;
+        let own = (3.0 + 6.0 + 9.0 + 1.0 + 1.0 + 9.0) * NUMBER + 4.0 + tension;
+        let rows = 8.0 + seen * (8.0 * 4.0 + 8.0 * 3.0 * sums * NUMBER);
+        let strains = traffic(scheme, "strains");
+        assert_close(&strains, [own, rows + seen * 8.0 * displacement, own + rows]);
+        // Consistent gradients have coefficients without stiffness, too, which forces of a particle do not take.
+        if sums == 1.0 {
+            let met = groups(scheme);
+            let own = tension + (3.0 + 15.0 + 3.0) * NUMBER;
+            let rows = 8.0 + met * (8.0 * 4.0 + 8.0 * 4.0 * NUMBER);
+            let forces = traffic(scheme, "forces");
+            let gathered = displacement + tension;
+            assert_close(&forces, [own, rows + met * 8.0 * gathered, own + rows]);
+        }
+    }
 }
 
-/// A surface of walls and a few loaded particles count by their share.
+/// Walls count by their share of the particles.
 #[test]
 fn what_acts_on_few_moves_little() {
     let mut session = session("ctvf/dam-break", &[]);
