@@ -109,6 +109,8 @@ pub enum Command {
 pub enum DevicesCommand {
     /// Show the passes of a case on a device, stage by stage, or the text of one; no device is needed
     Show(ShowArguments),
+    /// Show lower bounds of the time that the passes of a case take on some cards; no device is needed
+    Bounds(BoundsArguments),
 }
 
 /// Arguments of `piola devices show`.
@@ -124,6 +126,18 @@ pub struct ShowArguments {
     /// The language of the text
     #[arg(long, value_name = "LANGUAGE", default_value = "cuda")]
     pub language: TextLanguage,
+    /// The precision of what the device computes of pairs of particles [default: that of the case]
+    #[arg(long, value_name = "PRECISION")]
+    pub precision: Option<PairPrecision>,
+}
+
+/// Arguments of `piola devices bounds`.
+#[derive(Args, Debug)]
+#[command(after_help = Exit::table())]
+pub struct BoundsArguments {
+    /// The case.
+    #[command(flatten)]
+    pub file: CaseFile,
     /// The precision of what the device computes of pairs of particles [default: that of the case]
     #[arg(long, value_name = "PRECISION")]
     pub precision: Option<PairPrecision>,
@@ -231,7 +245,7 @@ pub struct CheckArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Show the stages of a step instead, with what each reads, gathers from neighbours, writes and
-    /// exposes: as a table, or as a graph in DOT
+    /// exposes: as a table with the bytes of it, or as a graph in DOT
     #[arg(long, value_name = "FORM", num_args = 0..=1, require_equals = true,
           default_missing_value = "table")]
     pub stages: Option<StageForm>,

@@ -55,6 +55,9 @@ fn dispatch(command: Command) -> Result<Exit, Fault> {
         Command::Devices { command: Some(DevicesCommand::Show(arguments)) } => {
             commands::devices::show(&arguments)
         }
+        Command::Devices { command: Some(DevicesCommand::Bounds(arguments)) } => {
+            commands::devices::bounds(&arguments)
+        }
         Command::Mcp { folder } => mcp::serve(&folder),
         Command::Schema => commands::generate::schema(),
         Command::Reference => commands::generate::reference(),

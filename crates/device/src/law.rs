@@ -2,7 +2,9 @@
 
 use piola_formulas::Number;
 
+use crate::pass::Use;
 use crate::record::{Binary, Operation, Tape, Traced, Unary, recorded};
+use crate::work::Operations;
 
 /// What makes results of numbers, once.
 pub(crate) type Function<'a, Y = Vec<Traced>> = Box<dyn FnOnce(&[Traced]) -> Y + 'a>;
@@ -60,24 +62,55 @@ impl Law {
         (0..self.needed.len() as u32).filter(|place| self.needed[*place as usize])
     }
 
+    /// Its operations by kind, without inputs and constants; those of a loop count once.
+    pub fn count(&self) -> Operations {
+        let mut count = Operations::default();
+        for place in self.places() {
+            let kind = match self.tape.operations[place as usize] {
+                Operation::Input(_)
+                | Operation::Constant(_)
+                | Operation::State(..)
+                | Operation::Final(..) => continue,
+                Operation::Binary(Binary::Add | Binary::Subtract, ..) => &mut count.sums,
+                Operation::Binary(Binary::Multiply, ..) => &mut count.products,
+                Operation::Binary(Binary::Divide, ..) => &mut count.quotients,
+                Operation::Unary(Unary::Sqrt, _) => &mut count.roots,
+                Operation::Unary(Unary::Negate | Unary::Abs, _)
+                | Operation::Less(..)
+                | Operation::AtMost(..)
+                | Operation::And(..)
+                | Operation::Or(..)
+                | Operation::Not(_)
+                | Operation::Select(..) => &mut count.choices,
+                Operation::Unary(..) | Operation::Binary(Binary::Power | Binary::Atan2, ..) => {
+                    &mut count.functions
+                }
+            };
+            *kind += 1;
+        }
+        count
+    }
+
     /// Number of operations, without inputs and constants; those of a loop count once.
     pub fn operations(&self) -> usize {
-        let counts = |place: &u32| {
-            !matches!(
-                self.tape.operations[*place as usize],
-                Operation::Input(_)
-                    | Operation::Constant(_)
-                    | Operation::State(..)
-                    | Operation::Final(..)
-            )
-        };
-        self.places().filter(counts).count()
+        self.count().all()
     }
 
     /// Whether results depend on an input.
     pub(crate) fn takes(&self, input: usize) -> bool {
         let is = |place| self.tape.operations[place as usize] == Operation::Input(input as u32);
         self.places().any(is)
+    }
+
+    /// What of some columns it takes, whose numbers are its inputs from the `first` on.
+    pub(crate) fn taken(&self, first: usize, columns: &[Use]) -> Vec<Use> {
+        let mut next = first;
+        let of = |column: &Use| {
+            let own = next..next + column.width;
+            next = own.end;
+            Use { width: own.filter(|&input| self.takes(input)).count(), ..*column }
+        };
+        columns.iter().map(of).collect()
     }
 
     /// Whether a result is an input as it came.

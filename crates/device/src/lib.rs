@@ -13,6 +13,7 @@
 //! - [`Device`] is a GPU, or a processor with OpenCL, that compiles and runs them. Nothing of CUDA or
 //!   OpenCL is needed to build.
 
+mod card;
 pub mod cuda;
 mod device;
 mod dialect;
@@ -30,6 +31,7 @@ pub mod reduce;
 mod text;
 mod work;
 
+pub use card::{CARDS, Card};
 pub use device::{Argument, Column, Device, Element, Found, Kernel, Program, devices, missing};
 pub use dialect::{Dialect, Layout};
 pub use error::DeviceError;
@@ -39,4 +41,4 @@ pub use machine::Machine;
 pub use pass::{Ask, At, Pass, Use, difference, filled, flat, local, own, spread, through};
 pub use record::{Traced, Truth};
 pub use text::{Language, Precision};
-pub use work::Work;
+pub use work::{Operations, Work};

@@ -221,9 +221,10 @@ fn local_boxed(
     writes.iter().for_each(|write| write.write(dialect, "new_", "        ", &mut text));
     text += "    }\n}\n";
     let narrow = dialect.layout.narrow;
-    let mut work = Work { operations: law.operations(), narrow, ..Work::default() };
+    let mut work = Work { operations: law.count(), narrow, ..Work::default() };
     work::join(&mut work.reads, reads);
     work::join(&mut work.writes, writes);
+    work.take(law.taken(scalars.len(), reads));
     Pass { name, text, asks: arguments.asks, threads: 1, work }
 }
 

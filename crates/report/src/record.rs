@@ -157,6 +157,8 @@ pub struct StageRecord {
     pub seconds: f64,
     /// Number of calls.
     pub calls: u64,
+    /// Bytes that come from memory and go there in a call even if caches serve all that is read again, if counted.
+    pub bytes: Option<f64>,
 }
 
 /// What one of several ranks has done since the run started, or went on.

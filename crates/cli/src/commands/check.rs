@@ -2,7 +2,7 @@
 
 use piola::case::{BANDWIDTH, Case, LATENCY, Plan, PlannedRank, Undamped};
 use piola::operators::Packing;
-use piola::schemes::{Particle, Phase};
+use piola::schemes::{Particle, Phase, Traffic};
 
 use super::{assemble, read, use_threads};
 use crate::arguments::{CheckArguments, StageForm};
@@ -20,7 +20,10 @@ pub fn check(arguments: &CheckArguments) -> Result<Exit, Fault> {
     let case = read(&arguments.case)?;
     let mut session = assemble(&arguments.case.file.case, &case)?;
     let text = match arguments.stages {
-        Some(form) => stages(&session.scheme().phases(), form),
+        Some(form) => {
+            let evaluations = session.evaluations_in_step();
+            stages(&session.scheme().phases(), evaluations, form)
+        }
         None => plan_text(&case, &session.plan()),
     };
     terminal::print(&text)?;
@@ -28,24 +31,46 @@ pub fn check(arguments: &CheckArguments) -> Result<Exit, Fault> {
 }
 
 /// The stages of a step.
-fn stages(phases: &[&Phase], form: StageForm) -> String {
+fn stages(phases: &[&Phase], evaluations: u64, form: StageForm) -> String {
     if phases.is_empty() {
         return "the scheme of this case does not list its stages\n".to_owned();
     }
     if form == StageForm::Dot {
         return phases.iter().map(|phase| phase.dot()).collect();
     }
-    let header = ["part", "stage", "reads", "gathers", "writes", "shows"];
+    let header =
+        ["part", "stage", "own", "neighbours", "memory", "reads", "gathers", "writes", "shows"];
     let mut rows: Vec<Vec<String>> = vec![header.map(str::to_owned).into()];
+    let row = |names: [&str; 2], traffic: &Traffic, columns: [&[&str]; 4]| {
+        let names = names.map(str::to_owned);
+        let bytes = [traffic.own, traffic.gathered, traffic.least];
+        let bytes = bytes.map(|bytes| bytes.round().to_string());
+        names.into_iter().chain(bytes).chain(columns.map(grouped)).collect()
+    };
     for phase in phases {
-        for (number, (stage, _)) in phase.stages.iter().enumerate() {
+        for (number, ((stage, _), traffic)) in phase.stages.iter().zip(&phase.traffic).enumerate() {
             let name = if number == 0 { phase.name } else { "" };
             let columns = [stage.reads, stage.gathers, stage.writes, stage.shows];
-            let cells = columns.map(grouped);
-            rows.push([name, stage.name].map(str::to_owned).into_iter().chain(cells).collect());
+            rows.push(row([name, stage.name], traffic, columns));
         }
     }
-    table::align(&rows, terminal::stdout_width(), &[2, 3, 5, 4]).join("\n") + "\n"
+    // Of several systems each has its own particles and steps.
+    let particles = phases[0].particles;
+    if phases.iter().all(|phase| phase.particles == particles) {
+        let times = evaluations as f64 / particles.max(1) as f64;
+        let all = Traffic::sum(phases.iter().flat_map(|phase| &phase.traffic));
+        let all = Traffic {
+            own: times * all.own,
+            gathered: times * all.gathered,
+            least: times * all.least,
+        };
+        rows.push(row(["step", ""], &all, [&[]; 4]));
+    }
+    let lines = table::align(&rows, terminal::stdout_width(), &[5, 6, 8, 7]).join("\n");
+    format!(
+        "Bytes per particle: read and written of the particle itself, read of neighbours with their lists, and what \
+         memory carries at least.\n\n{lines}\n"
+    )
 }
 
 /// Names with what those before a point share written once: `side.(velocity density) rates`.

@@ -2,14 +2,16 @@
 
 use std::fmt::Write;
 
+use piola::case::Session;
 use piola::schemes::DeviceStage;
-use piola_device::{Found, Language, Pass, Use, devices as all, missing};
+use piola_device::{CARDS, Found, Language, Operations, Pass, Use, devices as all, missing};
 
 use super::{assemble, read_with};
-use crate::arguments::{ShowArguments, TextLanguage};
+use crate::arguments::{BoundsArguments, CaseFile, PairPrecision, ShowArguments, TextLanguage};
 use crate::exit::{Exit, Fault};
 use crate::table::align;
 use crate::terminal;
+use crate::text::significant;
 
 /// Lists the devices of the machine, and why there are none of a kind.
 pub fn devices() -> Result<Exit, Fault> {
@@ -35,20 +37,12 @@ pub fn devices() -> Result<Exit, Fault> {
 
 /// Prints the passes of a case on a device, or the text of those of a stage.
 pub fn show(arguments: &ShowArguments) -> Result<Exit, Fault> {
-    let mut case = read_with(&arguments.file, arguments.file.set.clone())?;
-    // Nothing is computed.
-    (case.device, case.ranks) = (None, None);
-    if let Some(precision) = arguments.precision {
-        case.precision = precision.of_pairs();
-    }
-    let mut session = assemble(&arguments.file.case, &case)?;
     let language = match arguments.language {
         TextLanguage::Cuda => Language::Cuda,
         TextLanguage::Opencl => Language::OpenCl,
         TextLanguage::C => Language::C,
     };
-    let stages = session.device_stages(language);
-    let stages = stages.map_err(|refusal| Fault::new(Exit::BadCase, refusal))?;
+    let (mut session, stages) = staged(&arguments.file, arguments.precision, language)?;
     let text = match &arguments.stage {
         None => table(&stages),
         Some(name) => text_of(&stages, name).ok_or_else(|| {
@@ -60,6 +54,74 @@ pub fn show(arguments: &ShowArguments) -> Result<Exit, Fault> {
     };
     terminal::print(&text)?;
     Ok(Exit::Success)
+}
+
+/// Prints lower bounds of the time that the passes of a case take on some cards.
+pub fn bounds(arguments: &BoundsArguments) -> Result<Exit, Fault> {
+    let (session, stages) = staged(&arguments.file, arguments.precision, Language::Cuda)?;
+    let neighbors = session.neighbors().mean;
+    let head = ["stage", "pass", "sums", "products", "quotients", "roots", "functions", "bytes"];
+    let head = head.into_iter().chain(CARDS.iter().map(|card| card.name));
+    let mut rows = vec![head.map(str::to_owned).collect::<Vec<_>>()];
+    let mut all = [0.0; CARDS.len()];
+    for stage in &stages {
+        for (number, pass) in stage.passes.iter().enumerate() {
+            let work = &pass.work;
+            let name = if number == 0 { stage.name } else { "" };
+            let operations = |kind: fn(&Operations) -> usize| {
+                let of_pairs = work.by_neighbor.iter().min_by_key(|it| it.flops()).map_or(0, kind);
+                (kind(&work.operations) as f64 + neighbors * of_pairs as f64).round()
+            };
+            let counts = [
+                operations(|it| it.sums),
+                operations(|it| it.products),
+                operations(|it| it.quotients),
+                operations(|it| it.roots),
+                operations(|it| it.functions),
+                work.least_bytes(neighbors).round(),
+            ];
+            // Milliseconds for a million particles.
+            let times = CARDS.map(|card| 1e9 * card.bound(work, neighbors));
+            all.iter_mut().zip(times).for_each(|(all, time)| *all += time);
+            let names = [name, pass.name].map(str::to_owned).into_iter();
+            let counts = counts.iter().map(f64::to_string);
+            rows.push(names.chain(counts).chain(times.map(milliseconds)).collect());
+        }
+    }
+    let empty = vec![String::new(); rows[0].len() - CARDS.len() - 1];
+    rows.push([vec!["all".to_owned()], empty, all.map(milliseconds).to_vec()].concat());
+    let mut text = format!(
+        "{} neighbours per particle. Operations and bytes are those of a particle; times are lower bounds in ms for a \
+         million particles, from data sheets of the cards: nothing is measured. \
+         The building of neighbour lists is not among them, and passes over few particles count as over all.\n\n",
+        significant(neighbors, 3)
+    );
+    align(&rows, None, &[]).iter().for_each(|line| text += &format!("{line}\n"));
+    terminal::print(&text)?;
+    Ok(Exit::Success)
+}
+
+/// A time of the table.
+fn milliseconds(time: f64) -> String {
+    format!("{time:.3}")
+}
+
+/// A case as it would run on a device, with the passes of its stages.
+fn staged(
+    file: &CaseFile,
+    precision: Option<PairPrecision>,
+    language: Language,
+) -> Result<(Session, Vec<DeviceStage>), Fault> {
+    let mut case = read_with(file, file.set.clone())?;
+    // Nothing is computed.
+    (case.device, case.ranks) = (None, None);
+    if let Some(precision) = precision {
+        case.precision = precision.of_pairs();
+    }
+    let session = assemble(&file.case, &case)?;
+    let stages = session.device_stages(language);
+    let stages = stages.map_err(|refusal| Fault::new(Exit::BadCase, refusal))?;
+    Ok((session, stages))
 }
 
 /// The text of a stage, or of a single pass.
@@ -111,17 +173,19 @@ fn table(stages: &[DeviceStage]) -> String {
 /// Operations and bytes, per particle and per neighbour, and columns.
 fn cells(pass: &Pass) -> Vec<String> {
     let work = &pass.work;
-    let by_neighbor: Vec<String> = work.by_neighbor.iter().map(usize::to_string).collect();
+    let by_neighbor = work.by_neighbor.iter().map(|operations| operations.all().to_string());
+    let by_neighbor: Vec<String> = by_neighbor.collect();
     let [bytes, of_neighbor] = work.bytes();
     let of_neighbor = if of_neighbor == 0 { String::new() } else { of_neighbor.to_string() };
-    let columns = [&work.reads, &work.gathers, &work.writes].map(|columns| names(columns));
+    let gathers = work.of_pairs.iter().chain(&work.gathers);
+    let columns = [names(&work.reads), names(gathers), names(&work.writes)];
     let numbers =
-        [work.operations.to_string(), by_neighbor.join(", "), bytes.to_string(), of_neighbor];
+        [work.operations.all().to_string(), by_neighbor.join(", "), bytes.to_string(), of_neighbor];
     numbers.into_iter().chain(columns).collect()
 }
 
 /// Names of columns, each once.
-fn names(columns: &[Use]) -> String {
+fn names<'a>(columns: impl IntoIterator<Item = &'a Use>) -> String {
     let mut names: Vec<&str> = Vec::new();
     for column in columns {
         if !names.contains(&column.column) {

@@ -74,6 +74,13 @@ fn check_shows_the_stages_of_a_step() {
     let place = Place::with_bar();
     let (table, _) = place.run("check bar/case.toml --stages", 0);
     assert_contains(&table, &["part", "gathers", "rates", "local", "pairs", "boundary"]);
+    // Velocity, J, position, F, X and three reference values are 8 numbers, the body an index, and a side of 7 numbers takes 64 bytes.
+    let local = table.lines().find(|line| line.contains("local")).expect("it is listed");
+    assert_eq!(
+        local.split_whitespace().collect::<Vec<_>>()[..5],
+        ["rates", "local", "132", "0", "132"]
+    );
+    assert!(table.lines().last().is_some_and(|line| line.starts_with("step ")), "{table}");
     let (drawing, _) = place.run("check bar/case.toml --stages=dot", 0);
     assert_contains(&drawing, &["digraph rates {", "\"local\" -> \"pairs\"", "style=bold"]);
     place.run("check bar/case.toml --stages=chart", 2);
@@ -82,6 +89,8 @@ fn check_shows_the_stages_of_a_step() {
     let record: serde_json::Value = serde_json::from_str(&place.read("results/run.json")).unwrap();
     let passes = record["passes"].as_array().unwrap();
     assert!(passes.iter().any(|pass| pass["name"] == "rates: pairs" && pass["calls"] != 0));
+    // That of all six particles.
+    assert!(passes.iter().any(|pass| pass["name"] == "rates: local" && pass["bytes"] == 792.0));
 }
 
 #[test]

@@ -84,6 +84,19 @@ fn the_passes_of_a_case_are_shown_without_a_device() {
 }
 
 #[test]
+fn bounds_follow_from_data_sheets() {
+    let (table, _) = tube().run("devices bounds tube/case.toml", 0);
+    let row = table.lines().find(|line| line.contains("kick_velocities"));
+    let cells: Vec<&str> = row.expect("it is listed").split_whitespace().collect();
+    // A product and a sum of 32 bytes: 32 MB for a million particles, at 3.35, 4.8, 2.039, 1.008, 1.638 and 5.3 TB/s.
+    let times = ["0.010", "0.007", "0.016", "0.032", "0.020", "0.006"];
+    let counts = ["kick", "kick_velocities", "1", "1", "0", "0", "0", "32"];
+    assert_eq!(cells, [&counts[..], &times].concat());
+    assert_contains(&table, &["neighbours per particle", "nothing is measured"]);
+    tube().run("devices bounds tube/case.toml --precision half", 2);
+}
+
+#[test]
 fn the_text_of_a_stage_is_shown_in_each_language() {
     let place = tube();
     let of = |arguments: &str| place.run(&format!("devices show tube/case.toml {arguments}"), 0).0;

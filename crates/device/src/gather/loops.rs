@@ -7,7 +7,7 @@ use crate::dialect::Dialect;
 use crate::law::{Function, Law};
 use crate::pass::{Pass, Use, own};
 use crate::record::Traced;
-use crate::work::{self, Work};
+use crate::work::{self, Operations, Work};
 
 /// The column of positions by slot.
 pub(super) const POSITION: &str = "place";
@@ -194,7 +194,7 @@ impl Loop {
         self.write(&law, scalars, [columns, writes])
     }
 
-    /// What it computes and touches, with what is made of the sums.
+    /// What it computes and touches, with what is made of the sums and of columns, the last inputs of a law.
     pub fn work(&self, close: &Law, columns: &[Use], writes: &[Use]) -> Work {
         // Of rows the numbers of pairs are read, not the places of particles.
         let (place, of_pair) = match &self.pairs {
@@ -206,18 +206,27 @@ impl Loop {
         let (start, started) = self
             .start
             .as_ref()
-            .map_or((0, &[][..]), |(law, columns)| (law.operations(), columns.as_slice()));
+            .map_or((Operations::default(), &[][..]), |(law, columns)| (law.count(), columns));
         let mut work = Work {
-            operations: start + close.operations(),
+            operations: start + close.count(),
+            of_pairs: of_pair.into_iter().collect(),
             narrow: self.dialect.layout.narrow,
             ..Work::default()
         };
         let only = self.only.map(|only| own(only, 1));
         work::join(&mut work.reads, only.iter().chain(&place).chain(started).chain(columns));
-        work::join(&mut work.gathers, place.iter().chain(&of_pair));
+        work::join(&mut work.gathers, &place);
         work::join(&mut work.writes, writes);
+        let width = |columns: &[Use]| columns.iter().map(|column| column.width).sum::<usize>();
+        work.take(only.iter().chain(&place).copied());
+        work.take(close.taken(close.inputs.len() - width(columns), columns));
+        if let Some((law, columns)) = &self.start {
+            work.take(law.taken(0, columns));
+        }
         for term in &self.terms {
-            work.by_neighbor.push(term.law.operations());
+            work.by_neighbor.push(term.law.count());
+            work.take(term.law.taken(term.first, &term.mine));
+            work.take(term.law.taken(term.first + width(&term.mine), &term.others));
             work::join(&mut work.reads, &term.mine);
             work::join(&mut work.gathers, &term.others);
         }

@@ -1,4 +1,4 @@
-use piola_device::{Law, laws};
+use piola_device::{Law, Operations, laws};
 use piola_formulas::Number;
 use piola_formulas::hyperelastic::HyperelasticResponse;
 use piola_formulas::kernels::Kernel;
@@ -97,5 +97,8 @@ fn what_is_done_twice_is_recorded_once() {
         vec![("y".into(), square + x[0] * x[0] * Number::sqrt(x[0] * x[0]))]
     });
     assert_eq!(law.operations(), 4);
+    // x x, its root, their product, and the sum with x x.
+    let count = Operations { sums: 1, products: 2, roots: 1, ..Operations::default() };
+    assert_eq!(law.count(), count);
     assert_eq!(law.run(&[3.0]), [36.0]);
 }

@@ -10,7 +10,7 @@ use piola_formulas::pairs::{Components, Each, One};
 
 use super::directed::DirectedSupport;
 use super::dual_gradient::{DualGradient, dual_row};
-use super::frozen::{FrozenRows, Row};
+use super::frozen::{FrozenRows, Row, RowSizes};
 use super::gather::{Among, OfOther, Term, gather, gather_parts, sum_at, visit};
 use crate::parallel::{Parts, Team};
 use crate::{Tensor, Vector};
@@ -144,6 +144,11 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
             *force = *taken;
             tension[a].iter().zip(&own(a)).for_each(|(tension, sum)| *force += tension * sum);
         });
+    }
+
+    /// How large the rows of both passes are.
+    pub fn sizes(&self) -> [RowSizes; 2] {
+        [self.gradients.sizes(), self.forces.sizes()]
     }
 
     /// Bytes of all coefficients.

@@ -4,7 +4,7 @@ use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::{Frozen, Of, Square};
 
 use super::error::OperatorError;
-use super::frozen::{FrozenRows, Row};
+use super::frozen::{FrozenRows, Row, RowSizes};
 use super::gather::{Among, visit};
 use super::images::Image;
 use super::stencil::{Cover, GradientForm, stencils};
@@ -155,6 +155,11 @@ impl<const D: usize> ContinuedGradient<D> {
             }
         });
         divergence
+    }
+
+    /// How large its rows are.
+    pub fn sizes(&self) -> RowSizes {
+        self.rows.sizes()
     }
 
     /// Bytes of all coefficients.

@@ -27,6 +27,17 @@ pub struct Row {
     count: u32,
 }
 
+/// How large rows of neighbours are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RowSizes {
+    /// The number of rows.
+    pub rows: usize,
+    /// Neighbours in all of them, with what fills up groups.
+    pub entries: usize,
+    /// Bytes of all of them.
+    pub bytes: usize,
+}
+
 /// The neighbours of particles that do not change, with what is known of each pair, in blocks of
 /// [`LANES`] neighbours, number by number, so that one operation acts on several.
 ///
@@ -162,6 +173,18 @@ impl<R: Record> FrozenRows<R> {
     /// Number of rows.
     pub fn count(&self) -> usize {
         self.rows.len()
+    }
+
+    /// How large they are: a pass over pairs reads all of it.
+    pub fn sizes(&self) -> RowSizes {
+        let entries = LANES * self.neighbors.len();
+        RowSizes { rows: self.rows.len(), entries, bytes: self.memory() }
+    }
+
+    /// The same without what is known of pairs, for passes that ask who is a neighbour.
+    pub fn index_sizes(&self) -> RowSizes {
+        let sizes = self.sizes();
+        RowSizes { bytes: sizes.bytes - size_of_val(self.numbers.as_slice()), ..sizes }
     }
 
     /// Bytes of all rows, which a pass over pairs reads.

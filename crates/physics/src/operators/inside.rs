@@ -4,6 +4,7 @@ use multiversion::multiversion;
 
 use super::LANES;
 use super::block::all_of;
+use super::frozen::RowSizes;
 use crate::neighbors::{SkinList, shorter_way};
 use crate::{Vector, parallel};
 
@@ -105,6 +106,15 @@ impl InsideRows {
         let length = row.passive as usize;
         let start = row.start + (row.active as usize).next_multiple_of(LANES);
         (&self.places[start..][..length.next_multiple_of(LANES)], length)
+    }
+
+    /// How large the rows of some particles are.
+    pub fn sizes(&self, is_counted: impl Fn(usize) -> bool) -> RowSizes {
+        let own = || (0..self.rows.len()).filter(|&place| is_counted(place));
+        let of = |place: usize| self.active(place).0.len() + self.passive(place).0.len();
+        let (rows, entries) = (own().count(), own().map(of).sum());
+        let bytes = rows * size_of::<Row>() + entries * size_of::<u32>();
+        RowSizes { rows, entries, bytes }
     }
 
     /// Bytes of all arrays.

@@ -42,7 +42,7 @@ pub use directed::{DirectedSupport, nearest_radii};
 pub use dual_gradient::DualGradient;
 pub(crate) use dual_gradient::dual_row;
 pub use error::OperatorError;
-pub use frozen::{Columns, FrozenRows, LANES, Lanes, Row};
+pub use frozen::{Columns, FrozenRows, LANES, Lanes, Row, RowSizes};
 pub use gather::{
     Among, OfCenter, OfOther, Pairs, Same, Source, Sum, Term, add_at, gather, gather_parts, sum_at,
     visit,

@@ -6,6 +6,7 @@ use piola_formulas::pairs::{Moving, MovingPair};
 use piola_formulas::{Lanes4, WIDTH};
 
 use super::block::{BLOCK, NeighborBlock};
+use super::frozen::RowSizes;
 use super::gather::{Among, Pairs};
 use super::inside::{InsideRows, Reach};
 use crate::Vector;
@@ -180,6 +181,17 @@ impl<const D: usize> MovingSupport<D> {
     pub fn places_of(&self, place: usize) -> [&[u32]; 2] {
         [self.inside.active(place), self.inside.passive(place)]
             .map(|(places, count)| &places[..count])
+    }
+
+    /// How large the rows of neighbours of some particles, by place, are.
+    pub fn sizes(&self, is_counted: impl Fn(usize) -> bool) -> RowSizes {
+        self.inside.sizes(is_counted)
+    }
+
+    /// How large the lists are of which the neighbours are picked at each new position.
+    pub fn candidates(&self) -> RowSizes {
+        let (rows, entries) = (self.list.owned(), self.list.entries());
+        RowSizes { rows, entries, bytes: rows * size_of::<usize>() + entries * size_of::<u32>() }
     }
 
     /// Bytes of lists and positions.

@@ -9,6 +9,7 @@ use piola_formulas::kernels::Kernel;
 use super::adjoint::AdjointPairs;
 use super::directed::DirectedSupport;
 use super::dual_gradient::DualGradient;
+use super::frozen::RowSizes;
 use super::images::Image;
 use super::slots::Slots;
 use super::strained::{Strained, stabilised};
@@ -170,6 +171,14 @@ impl<const D: usize> ReferenceGradient<D> {
     pub fn length(&self, a: usize) -> usize {
         on_pairs!(&self.pairs, pairs => pairs.length(a))
     }
+
+    /// How large the rows of gradients and of forces are.
+    pub fn sizes(&self) -> [RowSizes; 2] {
+        on_pairs!(&self.pairs, pairs => pairs.sizes())
+    }
+
+    /// Bytes that a particle has of its own: coefficients, shape and stiffness.
+    pub const OWN: [usize; 2] = [size_of::<Center<D>>(), size_of::<f64>()];
 
     /// How many tensors forces gather of a particle.
     pub fn tensions(&self) -> usize {

@@ -358,7 +358,7 @@ mod tests {
     fn faults(stages: &[&[Entry]]) -> Vec<LedgerFault> {
         let stage = |_| Stage { name: "stage", reads: &[], gathers: &[], writes: &[], shows: &[] };
         let passes = (0..stages.len()).collect();
-        let mut all = Stages::new("test", &[], passes, stage).expect("nothing is read");
+        let mut all = Stages::new("test", &[], passes, stage, (0, &[])).expect("nothing is read");
         all.run(|pass, totals| {
             stages[pass].iter().for_each(|entry| totals.drive(*entry, &Total::of(1.0)));
         });

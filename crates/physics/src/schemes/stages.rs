@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::ledger::{Filled, Totals};
+use super::traffic::{Array, Traffic};
 
 /// One stage of an evaluation: a pass over all particles.
 ///
@@ -46,6 +47,14 @@ pub enum StageFault {
         /// What it gathers.
         column: &'static str,
     },
+    /// A column stands in no array of the formulation.
+    #[error("the stage `{stage}` has the column `{column}`, which stands in no array")]
+    NoArray {
+        /// The stage.
+        stage: &'static str,
+        /// The column.
+        column: &'static str,
+    },
 }
 
 /// A stop watch.
@@ -78,11 +87,20 @@ pub struct Phase {
     pub name: &'static str,
     /// Its stages in their order.
     pub stages: Vec<(Stage, Watch)>,
+    /// Bytes that each of them moves, with the neighbours of the start.
+    pub traffic: Vec<Traffic>,
+    /// The number of particles of the system.
+    pub particles: usize,
     /// The mechanisms of the ledger that they have filled.
     pub filled: Filled,
 }
 
 impl Phase {
+    /// Bytes that come from memory and go there in all of its stages, for all particles: see [`Traffic::least`].
+    pub fn least_bytes(&self) -> f64 {
+        Traffic::sum(&self.traffic).least * self.particles as f64
+    }
+
     /// Whether every stage finds what it needs: `state` are the columns that are there before the
     /// first, and that neighbours may gather.
     ///
@@ -150,24 +168,34 @@ impl<P> Default for Stages<P> {
     fn default() -> Self {
         Self {
             passes: Vec::new(),
-            phase: Phase { name: "", stages: Vec::new(), filled: Filled::default() },
+            phase: Phase {
+                name: "",
+                stages: Vec::new(),
+                traffic: Vec::new(),
+                particles: 0,
+                filled: Filled::default(),
+            },
         }
     }
 }
 
 impl<P: Copy> Stages<P> {
-    /// The stages of some passes.
+    /// The stages of some passes over particles, whose columns stand in some arrays.
     ///
     /// # Errors
-    /// See [`Phase::check`].
+    /// See [`Phase::check`]; and a column that stands in no array.
     pub fn new(
         name: &'static str,
         state: &[&'static str],
         passes: Vec<P>,
         stage: impl Fn(P) -> Stage,
+        (particles, arrays): (usize, &[Array]),
     ) -> Result<Self, StageFault> {
-        let stages = passes.iter().map(|&pass| (stage(pass), Watch::ZERO)).collect();
-        let phase = Phase { name, stages, filled: Filled::default() };
+        let stages: Vec<(Stage, Watch)> =
+            passes.iter().map(|&pass| (stage(pass), Watch::ZERO)).collect();
+        let traffic = stages.iter().map(|(stage, _)| Traffic::of(stage, arrays));
+        let traffic = traffic.collect::<Result<_, _>>()?;
+        let phase = Phase { name, stages, traffic, particles, filled: Filled::default() };
         phase.check(state)?;
         Ok(Self { passes, phase })
     }
@@ -244,9 +272,16 @@ mod tests {
     const TAKE: Stage =
         Stage { name: "take", reads: &["own"], gathers: &["side"], writes: &["y"], shows: &[] };
 
+    const ARRAYS: [Array; 4] = [
+        Array::of::<f64>("x"),
+        Array::of::<f64>("own"),
+        Array::of::<f64>("side"),
+        Array::of::<f64>("y"),
+    ];
+
     fn check(stages: &[Stage]) -> Result<(), StageFault> {
         let stages = stages.iter().map(|stage| (*stage, Watch::ZERO)).collect();
-        Phase { name: "test", stages, filled: Filled::default() }.check(&["x"])
+        Phase { stages, ..Stages::<u8>::default().phase }.check(&["x"])
     }
 
     #[test]
@@ -267,8 +302,8 @@ mod tests {
 
     #[test]
     fn stages_are_run_in_their_order_and_timed() {
-        let mut stages =
-            Stages::new("test", &["x"], vec![0, 1], |k| [MAKE, TAKE][k]).expect("good");
+        let mut stages = Stages::new("test", &["x"], vec![0, 1], |k| [MAKE, TAKE][k], (1, &ARRAYS))
+            .expect("good");
         let mut seen = Vec::new();
         stages.run(|pass, _| seen.push(pass));
         stages.run(|pass, _| seen.push(pass));

@@ -36,7 +36,7 @@ pub fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R
 pub fn run<const D: usize>(size: usize, switches: Switches) -> Measured {
     let (mut scheme, neighbors) = problem::build::<D>(size, switches);
     let particles = scheme.particle_count();
-    let bytes = scheme.streamed_bytes();
+    let bytes = scheme.phases().iter().map(|phase| phase.least_bytes()).sum::<f64>() as usize;
     let state = problem::disturbed(&scheme);
     let mut rate = vec![0.0; state.len()];
     let (_, passes) = clock::best(|| time_passes(&mut scheme, &state, &mut rate));

@@ -187,19 +187,24 @@ impl Outputs {
         record.retries = retries.collect();
         record.steps = summary.steps;
         record.time_reached = summary.time;
-        let build = StageRecord { name: "build".into(), seconds: build_seconds, calls: 1 };
+        let build =
+            StageRecord { name: "build".into(), seconds: build_seconds, calls: 1, bytes: None };
         let stages = summary.timings.iter().map(|timing| StageRecord {
             name: timing.stage.into(),
             seconds: timing.seconds,
             calls: timing.calls,
+            bytes: None,
         });
         record.stages = std::iter::once(build).chain(stages).collect();
         let phases = summary.phases.iter();
+        // Of one of several ranks, and on a device, other bytes are moved than by the stages of all particles.
+        let is_counted = summary.ranks.is_empty() && record.device.is_none();
         let passes = phases.flat_map(|phase| {
-            phase.stages.iter().map(|(stage, watch)| StageRecord {
+            phase.stages.iter().zip(&phase.traffic).map(|((stage, watch), traffic)| StageRecord {
                 name: format!("{}: {}", phase.name, stage.name),
                 seconds: watch.total.as_secs_f64(),
                 calls: watch.calls,
+                bytes: is_counted.then(|| (traffic.least * phase.particles as f64).round()),
             })
         });
         record.passes = passes.collect();

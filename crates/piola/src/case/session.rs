@@ -21,6 +21,7 @@ use super::resume::{self, Resumed};
 use super::source::Located;
 use super::views::Rows;
 use super::{Problems, report};
+use crate::neighbors::NeighborStatistics;
 use crate::observe::{Line, ProfileRecorder, Recorder, SharedTables};
 use crate::output::checkpoint::Identity;
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
@@ -168,6 +169,16 @@ impl Session {
     /// The formulation, bound to its particles.
     pub fn scheme(&mut self) -> &mut dyn Scheme {
         self.executor.scheme.as_mut()
+    }
+
+    /// Evaluations of single particles in a step.
+    pub fn evaluations_in_step(&self) -> u64 {
+        self.executor.evaluations_in_step()
+    }
+
+    /// Smallest, mean and largest number of neighbours at the start.
+    pub fn neighbors(&self) -> &NeighborStatistics {
+        &self.built.neighbors
     }
 
     /// The stages of a step on a device with their passes as text in a language, whether the steps are taken on one or

@@ -36,4 +36,5 @@ mod session;
 mod strong_form;
 #[path = "../support/mod.rs"]
 mod support;
+mod traffic;
 mod upwind;

@@ -159,7 +159,12 @@ fn a_record_reads_back_whole() {
         steps: 12,
         end_time: 0.1 + 0.2,
         time_reached: 1.0 / 3.0,
-        stages: vec![StageRecord { name: "rates".into(), seconds: 0.25, calls: 24 }],
+        stages: vec![StageRecord {
+            name: "rates".into(),
+            seconds: 0.25,
+            calls: 24,
+            bytes: Some(8e6),
+        }],
         files: vec!["particles.pvd".into()],
         warnings: vec!["few neighbours".into()],
         ..record()

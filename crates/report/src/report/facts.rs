@@ -172,9 +172,13 @@ pub fn timings(record: &RunRecord) -> Markup {
 /// A table of times with their shares of all of them together.
 fn stages(title: &str, stages: &[StageRecord]) -> Markup {
     let total: f64 = stages.iter().map(|stage| stage.seconds).sum();
+    let is_counted = stages.iter().any(|stage| stage.bytes.is_some());
     html! {
         div .wide { table .numbers {
-            thead { tr { th { (title) } th { "Time" } th { "Share" } th {} th { "Calls" } th { "Each" } } }
+            thead { tr {
+                th { (title) } th { "Time" } th { "Share" } th {} th { "Calls" } th { "Each" }
+                @if is_counted { th { "GB/s, at least" } }
+            } }
             tbody { @for stage in stages.iter().take(MAX_LINES) {
                 @let share = if total > 0.0 { stage.seconds / total } else { 0.0 };
                 tr {
@@ -186,10 +190,18 @@ fn stages(title: &str, stages: &[StageRecord]) -> Markup {
                     } }
                     td { (stage.calls) }
                     td { (each(stage.seconds, stage.calls)) }
+                    @if is_counted { td { (rate(stage)) } }
                 }
             } }
         } }
     }
+}
+
+/// Billions of bytes a second that memory has carried, if they are counted.
+fn rate(stage: &StageRecord) -> String {
+    let bytes = stage.bytes.unwrap_or(f64::NAN) * stage.calls as f64;
+    let rate = 1e-9 * bytes / stage.seconds;
+    if rate.is_finite() { format!("{rate:.1}") } else { String::new() }
 }
 
 /// How evenly ranks have computed, and what they have told each other.

@@ -200,7 +200,7 @@ impl<const D: usize> TotalLagrangian<D> {
             jumped: None,
             is_evaluated: false,
             has_matrices: true,
-            stages: stages::plan(is_strong, dissipation.is_viscous())?,
+            stages: stages::plan(&matrices, count, dissipation.is_viscous())?,
             displacement: vec![Vector::zeros(); with_all],
             velocity: vec![Vector::zeros(); if is_continued { with_all } else { 0 }],
             acceleration: vec![Vector::zeros(); with_edges],

@@ -2,7 +2,7 @@
 
 use super::Discrete;
 use super::strong::Edges;
-use crate::operators::Strained;
+use crate::operators::{RowSizes, Strained};
 use crate::{Tensor, Vector, parallel};
 
 /// What takes derivatives of displacements and of stresses.
@@ -76,6 +76,14 @@ impl<const D: usize> Matrices<D> {
         match self {
             Self::Adjoint(discrete) => discrete.operator.neighbors(a),
             Self::Strong(edges) => edges.neighborhood(a).len(),
+        }
+    }
+
+    /// How large the rows of gradients and of forces are.
+    pub fn sizes(&self) -> [RowSizes; 2] {
+        match self {
+            Self::Adjoint(discrete) => discrete.operator.sizes(),
+            Self::Strong(edges) => [edges.gradient.sizes(), edges.divergence.sizes()],
         }
     }
 

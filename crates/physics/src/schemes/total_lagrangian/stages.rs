@@ -1,10 +1,13 @@
 //! The stages of an evaluation.
 
-use super::TotalLagrangian;
-use super::fields::Columns;
-use crate::Vector;
+use super::fields::{Columns, Made};
+use super::{Matrices, TotalLagrangian};
+use crate::fields::width;
+use crate::operators::ReferenceGradient;
+use crate::schemes::Array;
 use crate::schemes::ledger::{Found, Totals};
 use crate::schemes::stages::{Stage, StageFault, Stages};
+use crate::{Tensor, Vector};
 
 /// A pass over particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +30,19 @@ pub(super) enum Pass {
     External,
 }
 
-const STATE: [&str; 3] = ["displacement", "velocity", "kick"];
+/// The columns of the state, constants, and lists of neighbours.
+const STATE: [&str; 10] = [
+    "displacement",
+    "velocity",
+    "kick",
+    "mass",
+    "volume",
+    "mixture",
+    "center",
+    "hourglass",
+    "coefficients",
+    "dual_coefficients",
+];
 
 impl Pass {
     fn stage(self) -> Stage {
@@ -35,29 +50,42 @@ impl Pass {
             |name, reads, gathers, writes, shows| Stage { name, reads, gathers, writes, shows };
         match self {
             Self::Load => {
-                stage("load", &["displacement", "velocity"], &["displacement"], &[], &["continued"])
+                let shows = &["displacement", "continued"];
+                stage("load", &["displacement", "velocity"], &["displacement"], &[], shows)
             }
             Self::Rates => {
-                stage("rates_of_strain", &[], &["velocity", "continued"], &["gradient_rate"], &[])
+                let gathers = &["velocity", "continued"];
+                stage("rates_of_strain", &["coefficients"], gathers, &["gradient_rate"], &[])
             }
             Self::Strains => {
                 let gathers = &["displacement", "continued"];
-                stage("strains", &["displacement"], gathers, &["gradient"], &["tension"])
+                let reads = &[
+                    "displacement",
+                    "gradient_rate",
+                    "coefficients",
+                    "center",
+                    "hourglass",
+                    "volume",
+                    "mixture",
+                ];
+                stage("strains", reads, gathers, &["gradient"], &["tension"])
             }
             Self::Gradients => {
                 let gathers = &["displacement", "velocity", "continued"];
-                stage("gradients", &[], gathers, &["gradient", "gradient_rate"], &[])
+                let writes = &["gradient", "gradient_rate"];
+                stage("gradients", &["coefficients"], gathers, writes, &[])
             }
-            Self::Stresses => stage("stresses", &["gradient"], &[], &["stress"], &[]),
+            Self::Stresses => stage("stresses", &["gradient", "mixture"], &[], &["stress"], &[]),
             Self::Tensions => {
                 stage("tensions", &["gradient", "gradient_rate", "stress"], &[], &[], &["tension"])
             }
             Self::Forces => {
                 let gathers = &["tension", "displacement", "continued"];
-                stage("forces", &["tension"], gathers, &["force"], &[])
+                let reads = &["tension", "displacement", "dual_coefficients", "center"];
+                stage("forces", reads, gathers, &["force"], &[])
             }
             Self::External => {
-                let reads = &["displacement", "velocity", "force", "gradient"];
+                let reads = &["displacement", "velocity", "force", "gradient", "mass"];
                 stage("external", reads, &[], &["rate", "ledger"], &[])
             }
         }
@@ -68,14 +96,56 @@ impl Pass {
 ///
 /// # Errors
 /// They do not fit together.
-pub(super) fn plan(is_strong: bool, is_viscous: bool) -> Result<Stages<Pass>, StageFault> {
+pub(super) fn plan<const D: usize>(
+    matrices: &Matrices<D>,
+    count: usize,
+    is_viscous: bool,
+) -> Result<Stages<Pass>, StageFault> {
+    let is_strong = matrices.edges().is_some();
+    let mut state = STATE.to_vec();
+    if !is_viscous {
+        // Nobody fills or reads it.
+        state.push("gradient_rate");
+    }
     let strains = match (is_strong, is_viscous) {
         (true, _) => vec![Pass::Gradients, Pass::Stresses, Pass::Tensions],
         (false, true) => vec![Pass::Rates, Pass::Strains],
         (false, false) => vec![Pass::Strains],
     };
     let passes = [&[Pass::Load], &*strains, &[Pass::Forces, Pass::External]].concat();
-    Stages::new("rates", &STATE, passes, Pass::stage)
+    Stages::new("rates", &state, passes, Pass::stage, (count, &arrays(matrices, count, is_viscous)))
+}
+
+/// What the columns of stages stand in.
+fn arrays<const D: usize>(matrices: &Matrices<D>, count: usize, is_viscous: bool) -> Vec<Array> {
+    let tensor = size_of::<Tensor<D>>();
+    let tensions = match matrices {
+        Matrices::Adjoint(discrete) => discrete.operator.tensions(),
+        Matrices::Strong(_) => 1,
+    };
+    let [center, hourglass] = match matrices {
+        Matrices::Adjoint(_) => ReferenceGradient::<D>::OWN,
+        Matrices::Strong(_) => [0; 2],
+    };
+    let [gradients, forces] = matrices.sizes();
+    let own = [
+        Array::spread("continued", matrices.behind() * size_of::<Vector<D>>(), count),
+        Array::of::<Tensor<D>>("gradient"),
+        Array::with("gradient_rate", if is_viscous { tensor } else { 0 }),
+        Array::of::<Tensor<D>>("stress"),
+        Array::with("tension", tensions * tensor),
+        Array::of::<Vector<D>>("force"),
+        Array::with("rate", width(Made::FIELDS, D) * size_of::<f64>()),
+        Array::with("ledger", 0),
+        Array::of::<f64>("mass"),
+        Array::of::<f64>("volume"),
+        Array::of::<u32>("mixture"),
+        Array::with("center", center),
+        Array::with("hourglass", hourglass),
+        Array::rows("coefficients", gradients, gradients.rows),
+        Array::rows("dual_coefficients", forces, forces.rows),
+    ];
+    Array::columns(Made::FIELDS, D).chain(own).collect()
 }
 
 impl<const D: usize> TotalLagrangian<D> {

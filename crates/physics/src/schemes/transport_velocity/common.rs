@@ -7,19 +7,21 @@ use piola_formulas::pairs::Record;
 use piola_formulas::pairs::fluid::FluidSide;
 
 use super::barrier::Hold;
-use super::fields::{Columns, ColumnsMut};
+use super::fields::{Columns, ColumnsMut, Made};
 use super::shifting::Iteration;
 use super::sides::Side;
 use super::surface::Opening;
 use super::walls::{WallParticle, WallValues};
-use super::{Continua, Forces, Guard, Guided, Settings};
+use super::{Continua, Continuum, DensityRule, Forces, Guard, Guided, Settings};
 use crate::Vector;
 use crate::boundaries::BodyForce;
 use crate::boundaries::prescribed::PrescribedComponents;
+use crate::fields::width;
 use crate::geometry::Particles;
+use crate::neighbors::SkinList;
 use crate::operators::MovingSupport;
 use crate::parallel::Team;
-use crate::schemes::RankRows;
+use crate::schemes::{Array, RankRows};
 
 /// The matter of a body where nothing presses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -236,6 +238,43 @@ impl<const D: usize> Common<D> {
     pub(super) fn body_force_at(&self, number: usize, place: usize, time: f64) -> Vector<D> {
         let position = &self.support.list().positions()[place];
         BodyForce::sum(&self.body_forces, self.particles.body[number], position, time)
+    }
+
+    /// What columns stand in that are of all matter.
+    pub(super) fn arrays<M: Continuum<D>>(&self) -> Vec<Array> {
+        let (list, count) = (self.support.list(), self.count());
+        let rows = |name, is_counted: fn(&SkinList<D>, usize) -> bool| {
+            Array::rows(name, self.support.sizes(|place| is_counted(list, place)), count)
+        };
+        let summed = match self.settings.density {
+            DensityRule::Summation => rows("neighbors.summed", |_, _| true),
+            _ => Array::with("neighbors.summed", 0),
+        };
+        let own = width(M::DESCRIPTION.fields, D) - width(Made::FIELDS, D);
+        let all = [
+            Array::of::<Vector<D>>("acceleration"),
+            Array::of::<Vector<D>>("shifting_velocity"),
+            Array::with("material_state", own * size_of::<f64>()),
+            Array::of::<f64>("mass"),
+            Array::of::<u32>("body"),
+            Array::of::<u32>("order"),
+            Array::of::<Vector<D>>("place"),
+            Array::of::<Side<D>>("side"),
+            Array::of::<Forces<D>>("forces"),
+            Array::of::<Opening<D>>("surface"),
+            Array::of::<bool>("on_surface"),
+            Array::of::<Hold<D>>("barrier"),
+            Array::spread("wall_motion", size_of_val(self.wall_values.as_slice()), count),
+            rows("neighbors", |_, _| true),
+            rows("neighbors.active", |list, place| !list.is_passive(place)),
+            rows("neighbors.passive", SkinList::is_passive),
+            summed,
+            Array::rows("candidates", self.support.candidates(), count),
+        ];
+        // These are few numbers, or of few particles.
+        let few = ["fastest", "ledger", "buffers", "openings", "damping"];
+        let few = few.into_iter().map(|name| Array::with(name, 0));
+        Array::columns(Made::FIELDS, D).chain(all).chain(few).collect()
     }
 
     /// Bytes of arrays by particle.

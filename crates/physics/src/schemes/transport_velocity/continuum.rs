@@ -19,7 +19,7 @@ use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
 use crate::schemes::{
-    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Passage, SchemeDescription,
+    Array, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Passage, SchemeDescription,
 };
 
 /// Matter bound to the particles that all kinds of it share.
@@ -231,8 +231,8 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         values: &mut Vec<f64>,
     );
 
-    /// Bytes a particle.
-    fn memory() -> usize;
+    /// Its arrays by particle, in which its columns stand.
+    fn arrays(&self) -> Vec<Array>;
 
     /// Its steps on a device.
     ///

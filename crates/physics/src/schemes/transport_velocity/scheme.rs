@@ -192,7 +192,8 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
 
     #[inline(never)]
     fn memory(&self) -> usize {
-        let matter = self.particle_count() * M::memory();
+        let bytes: f64 = self.matter.arrays().iter().map(|array| array.bytes).sum();
+        let matter = self.particle_count() * bytes as usize;
         self.common.memory() + matter + size_of_val(self.start.as_slice())
     }
 

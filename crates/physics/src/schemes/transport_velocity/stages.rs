@@ -59,20 +59,74 @@ const STATE: [&str; 7] = [
     "material_state",
 ];
 
+/// What does not change but with the list of neighbours, and that list; the last of matter that has columns of its own.
+const CONSTANTS: [&str; 10] = [
+    "place",
+    "mass",
+    "body",
+    "order",
+    "candidates",
+    "neighbors.active",
+    "neighbors.passive",
+    "neighbors.summed",
+    "correction",
+    "tension.constants",
+];
+
+/// What a load reads.
+const LOADED: [&str; 9] = [
+    "mass",
+    "order",
+    "candidates",
+    "position",
+    "velocity",
+    "density",
+    "pressure",
+    "shifting_velocity",
+    "material_state",
+];
+
 /// What a drift changes of them.
 const MOVED: [&str; 5] = ["position", "velocity", "density", "pressure", "material_state"];
 
-/// What neighbours see of a particle after [`Pass::Load`].
-const SIDE: [&str; 5] =
-    ["side.velocity", "side.shifting_velocity", "side.density", "side.pressure", "side.material"];
+/// What a drift reads.
+const MOVING: [&str; 10] = [
+    "rates",
+    "side.density",
+    "mass",
+    "order",
+    "position",
+    "velocity",
+    "shifting_velocity",
+    "density",
+    "pressure",
+    "material_state",
+];
 
 /// What they see of walls of matter that has no columns of its own.
 const WALL: [&str; 5] =
     ["side.velocity", "side.shifting_velocity", "side.density", "side.pressure", "shear"];
 
-/// The columns, without the last where matter has no columns of its own.
-fn of<const D: usize, M: Continuum<D>>(all: &'static [&'static str]) -> &'static [&'static str] {
-    if M::HAS_MATERIAL { all } else { &all[..all.len() - 1] }
+/// What neighbours see of all matter, with columns before and columns that only some matter has.
+macro_rules! sides {
+    ($($before:literal),*; $($own:literal),*) => {
+        &[
+            $($before,)*
+            "side.velocity",
+            "side.shifting_velocity",
+            "side.density",
+            "side.pressure",
+            $($own,)*
+        ]
+    };
+}
+
+/// The columns, without the last ones where matter has no columns of its own.
+fn of<const D: usize, M: Continuum<D>>(
+    all: &'static [&'static str],
+    own: usize,
+) -> &'static [&'static str] {
+    if M::HAS_MATERIAL { all } else { &all[..all.len() - own] }
 }
 
 /// A stage with what it reads, gathers, writes and shows.
@@ -85,7 +139,7 @@ pub(super) const fn stage(
 
 /// What the pass of a kind of matter reads and writes.
 pub(super) fn stage_of<const D: usize, M: Continuum<D>>(pass: Pass<M::Own>) -> Stage {
-    let side = of::<D, M>(&SIDE);
+    let side = of::<D, M>(sides![; "side.material"], 1);
     let wall: &[&str] = if M::HAS_MATERIAL { side } else { &WALL };
     let (name, columns): (_, [&[&str]; 4]) = match pass {
         Pass::Remove => {
@@ -94,47 +148,73 @@ pub(super) fn stage_of<const D: usize, M: Continuum<D>>(pass: Pass<M::Own>) -> S
         }
         Pass::Prescribe => ("prescribe", [&["position"], &[], &[], &["velocity"]]),
         Pass::Iterate => {
-            let shows = &["shifting_velocity"];
-            ("iterate", [&["position", "velocity"], &["position"], &[], shows])
+            let (reads, shows) =
+                (&["position", "velocity", "neighbors.active"], &["shifting_velocity"]);
+            ("iterate", [reads, &["place"], &[], shows])
         }
-        Pass::Load => ("load", [of::<D, M>(&STATE), &[], &[], side]),
+        Pass::Load => {
+            let shows = of::<D, M>(sides!["place"; "side.material"], 1);
+            ("load", [of::<D, M>(&LOADED, 1), &["place"], &["neighbors"], shows])
+        }
         Pass::Push => {
-            let reads = &["side.pressure", "side.density"];
+            let reads = &["side.pressure", "side.density", "neighbors.active"];
             let (writes, shows) = (&["shifting_velocity"], &["side.shifting_velocity"]);
-            ("push", [reads, &["side.density"], writes, shows])
+            ("push", [reads, &["place", "side.density"], writes, shows])
         }
         Pass::State => {
+            let reads = of::<D, M>(sides!["neighbors.summed"; "side.material"], 1);
             let shows = &["side.density", "side.pressure"];
-            ("equation_of_state", [side, &["side.density"], &["fastest"], shows])
+            ("equation_of_state", [reads, &["place", "side.density"], &["fastest"], shows])
         }
-        Pass::Walls => ("walls", [&["position"], side, &["wall_motion"], wall]),
-        Pass::Rates => ("rates", [side, side, &["rates"], &[]]),
-        Pass::Move => {
-            ("move", [&["rates", "velocity", "shifting_velocity"], &[], &[], of::<D, M>(&MOVED)])
+        Pass::Walls => {
+            let reads = &["place", "neighbors.passive"];
+            ("walls", [reads, side, &["wall_motion"], wall])
         }
+        Pass::Rates => {
+            let reads = of::<D, M>(sides!["neighbors.active"; "side.material"], 1);
+            let gathers = sides!["place"; "side.material", "tension.constants"];
+            ("rates", [reads, of::<D, M>(gathers, 2), &["rates"], &[]])
+        }
+        Pass::Move => ("move", [of::<D, M>(&MOVING, 1), &[], &[], of::<D, M>(&MOVED, 1)]),
         Pass::Forces => {
-            let writes = &["forces", "crowding", "opening"];
-            ("forces", [side, side, writes, &[]])
+            let reads = of::<D, M>(sides!["neighbors"; "tension"], 1);
+            let gathers = of::<D, M>(sides!["place"; "tension"], 1);
+            let writes = &["forces", "forces.crowding", "forces.opening"];
+            ("forces", [reads, gathers, writes, &[]])
         }
-        Pass::BodyForces => ("body_forces", [&["position", "forces"], &[], &["forces"], &[]]),
-        Pass::Sharpen => ("sharpen", [&["opening"], &[], &[], &["sharp_normal"]]),
+        Pass::BodyForces => {
+            ("body_forces", [&["place", "forces", "order", "body"], &[], &["forces"], &[]])
+        }
+        Pass::Sharpen => ("sharpen", [&["forces.opening"], &[], &[], &["surface.sharp_normal"]]),
         Pass::Surfaces => {
-            let gathers = &["side.density", "sharp_normal"];
-            ("surfaces", [&["sharp_normal"], gathers, &["normal"], &["on_surface"]])
+            let reads = &["surface.sharp_normal", "neighbors.active"];
+            let gathers = &["place", "side.density", "surface.sharp_normal"];
+            ("surfaces", [reads, gathers, &["surface.normal"], &["on_surface"]])
         }
-        Pass::Reach => ("reach", [&["on_surface"], &["on_surface"], &["reach"], &[]]),
+        Pass::Reach => {
+            let reads = &["on_surface", "neighbors.active"];
+            ("reach", [reads, &["on_surface"], &["surface.reach"], &[]])
+        }
         Pass::Shift => {
-            let reads = &["crowding", "fastest"];
+            let reads = &["forces.crowding", "fastest"];
             ("shift", [reads, &["side.density"], &["side.shifting_velocity"], &[]])
         }
         Pass::HoldOff => {
             let reads = &["forces", "side.velocity", "side.shifting_velocity", "wall_motion"];
-            ("hold_off", [reads, &["position"], &["side.shifting_velocity"], &["barrier"]])
+            ("hold_off", [reads, &["place"], &["side.shifting_velocity"], &["barrier"]])
         }
         Pass::Bear => ("bear", [&["forces", "barrier"], &["barrier"], &["forces"], &[]]),
         Pass::Store => {
-            let reads =
-                &["forces", "side.density", "side.pressure", "side.shifting_velocity", "velocity"];
+            let reads = &[
+                "forces",
+                "side.density",
+                "side.pressure",
+                "side.shifting_velocity",
+                "position",
+                "velocity",
+                "mass",
+                "order",
+            ];
             let writes = &["acceleration", "density", "pressure", "shifting_velocity", "ledger"];
             ("store", [reads, &[], writes, &[]])
         }
@@ -191,11 +271,13 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     pub(super) fn plan(&mut self) -> Result<(), StageFault> {
         let [drift, accelerate] = self.matter.passes(&self.common);
         // Without rates nothing is moved by them.
-        let all = of::<D, M>(&STATE);
-        let mut state = all.to_vec();
+        let all = [of::<D, M>(&STATE, 1), of::<D, M>(&CONSTANTS, 1)].concat();
+        let mut state = all.clone();
         state.extend((!drift.contains(&Pass::Rates)).then_some("rates"));
-        self.drift = Stages::new("drift", &state, drift, stage_of::<D, M>)?;
-        self.accelerate = Stages::new("accelerate", all, accelerate, stage_of::<D, M>)?;
+        let arrays = [self.common.arrays::<M>(), self.matter.arrays()].concat();
+        let arrays = (self.common.count(), &*arrays);
+        self.drift = Stages::new("drift", &state, drift, stage_of::<D, M>, arrays)?;
+        self.accelerate = Stages::new("accelerate", &all, accelerate, stage_of::<D, M>, arrays)?;
         Ok(())
     }
 

@@ -29,7 +29,7 @@ use crate::fields::{FieldDescription, columns};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
 use crate::schemes::{
-    Accounts, Capability, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Passage,
+    Accounts, Array, Capability, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Passage,
     SchemeDescription,
 };
 
@@ -437,8 +437,12 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         }
     }
 
-    fn memory() -> usize {
-        size_of::<Rates>() + size_of::<Vector<D>>() + size_of::<f64>()
+    fn arrays(&self) -> Vec<Array> {
+        vec![
+            Array::of::<Rates>("rates"),
+            Array::of::<Vector<D>>("shear"),
+            Array::of::<f64>("summed"),
+        ]
     }
 
     fn to_device(

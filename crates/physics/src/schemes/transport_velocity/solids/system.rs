@@ -27,7 +27,8 @@ use crate::schemes::transport_velocity::{
     TransportVelocityError,
 };
 use crate::schemes::{
-    Accounts, Capability, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, SchemeDescription,
+    Accounts, Array, Capability, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps,
+    SchemeDescription,
 };
 use crate::{Tensor, Vector};
 
@@ -206,9 +207,13 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
 
     fn stage(pass: Stress) -> Stage {
         match pass {
-            Stress::Correct => stage("correct", [&[], &["side.density"], &["correction"], &[]]),
+            Stress::Correct => {
+                let gathers = &["place", "side.density"];
+                stage("correct", [&["neighbors.active"], gathers, &["correction"], &[]])
+            }
             Stress::Tension => {
-                stage("tension", [&["side.pressure", "side.material"], &[], &[], &["tension"]])
+                let reads = &["side.pressure", "side.material", "correction"];
+                stage("tension", [reads, &[], &[], &["tension"]])
             }
             Stress::Hold => stage("hold", [&["forces"], &[], &["forces"], &[]]),
         }
@@ -347,8 +352,14 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
         }
     }
 
-    fn memory() -> usize {
-        size_of::<SolidRates<D>>() + size_of::<Tension<D>>() + size_of::<Matter>()
+    fn arrays(&self) -> Vec<Array> {
+        let correction = if self.corrections.is_empty() { 0 } else { size_of::<Tensor<D>>() };
+        vec![
+            Array::of::<SolidRates<D>>("rates"),
+            Array::of::<Tension<D>>("tension"),
+            Array::of::<Matter>("side.material"),
+            Array::with("correction", correction),
+        ]
     }
 
     fn to_device(
