@@ -111,15 +111,14 @@ fn total_lagrangian_solids_move_what_their_tables_have() {
         let rows = 8.0 + seen * (8.0 * 4.0 + 8.0 * 3.0 * sums * NUMBER);
         let strains = traffic(scheme, "strains");
         assert_close(&strains, [own, rows + seen * 8.0 * displacement, own + rows]);
-        // Consistent gradients have coefficients without stiffness, too, which forces of a particle do not take.
-        if sums == 1.0 {
-            let met = groups(scheme);
-            let own = tension + (3.0 + 15.0 + 3.0) * NUMBER;
-            let rows = 8.0 + met * (8.0 * 4.0 + 8.0 * 4.0 * NUMBER);
-            let forces = traffic(scheme, "forces");
-            let gathered = displacement + tension;
-            assert_close(&forces, [own, rows + met * 8.0 * gathered, own + rows]);
-        }
+        // Forces take a particle from those that see it, and from those that it sees with a stiffness.
+        let own = tension + (3.0 + 15.0 + 3.0) * NUMBER;
+        let group = 8.0 * 4.0 + 8.0 * (3.0 * sums + 1.0) * NUMBER;
+        let forces = traffic(scheme, "forces");
+        let met = (forces.least - own - 8.0) / group;
+        assert!((seen..=groups(scheme)).contains(&met), "{met} beside {seen}");
+        let gathered = met * (group + 8.0 * (displacement + tension));
+        assert_close(&forces, [own, 8.0 + gathered, own + 8.0 + met * group]);
     }
 }
 
