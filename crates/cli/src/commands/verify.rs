@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use piola::case::page::{PageCase, Row, SettingRuns};
-use piola::case::verify::{VariantRun, needed_variants, verify as evaluate};
+use piola::case::verify::{NotRun, VariantRun, needed_variants, verify as evaluate};
 use piola::case::{Case, Finished, Level, LoadOptions, Session, load};
 use piola::time::Outcome;
 
@@ -208,7 +208,7 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
             let traits = base.traits_of(variant);
             let mut leave = |case: &Case, why: &str| {
                 runs.push((variant.map(str::to_owned), case.clone(), None));
-                Err(why.to_owned())
+                Err(NotRun { case: Some(Box::new(case.clone())), reason: why.to_owned() })
             };
             if traits.is_long && !arguments.is_long_wanted(variant)
                 || only_paper && !traits.is_paper

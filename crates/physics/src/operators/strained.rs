@@ -21,8 +21,9 @@ impl<const D: usize> Strained<D> {
     }
 }
 
-/// Fills in the tensions of particles that follow each other by a function of one.
-pub(crate) fn one_by_one<const D: usize>(
+/// Fills in the tensions of particles that follow each other, by that of one: what
+/// [`ReferenceGradient::strain`](super::ReferenceGradient::strain) takes.
+pub fn one_by_one<const D: usize>(
     tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
 ) -> impl Fn(usize, &[Tensor<D>], &mut [Tensor<D>]) + Sync {
     move |first, gradients, tensions| {

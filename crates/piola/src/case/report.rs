@@ -148,7 +148,7 @@ const NOT_THIS_RUN: &str = "not this run";
 fn rows(case: &Case, run: &Recorded) -> Vec<CheckRow> {
     verify(case, &mut |variant| {
         if variant != run.record.variant.as_deref() {
-            return Err(NOT_THIS_RUN.to_owned());
+            return Err(NOT_THIS_RUN.to_owned().into());
         }
         let run = Recorded { record: run.record, tables: run.tables.clone() };
         Ok(VariantRun { case: case.clone(), run })

@@ -75,8 +75,22 @@ pub struct VariantRun<Run> {
     pub run: Run,
 }
 
+/// Why a variant was not run.
+pub struct NotRun {
+    /// The case with its overrides, if it can be read: its checks are described by its own parameters.
+    pub case: Option<Box<Case>>,
+    /// Why.
+    pub reason: String,
+}
+
+impl From<String> for NotRun {
+    fn from(reason: String) -> Self {
+        Self { case: None, reason }
+    }
+}
+
 /// Runs the variant or member of a sweep of this name (`None`: the case itself), or returns the reason why it cannot.
-pub type RunVariant<'a, Run> = dyn FnMut(Option<&str>) -> Result<VariantRun<Run>, String> + 'a;
+pub type RunVariant<'a, Run> = dyn FnMut(Option<&str>) -> Result<VariantRun<Run>, NotRun> + 'a;
 
 /// One line of the table of `piola verify`.
 #[derive(Clone, Debug, PartialEq)]

@@ -224,7 +224,7 @@ fn a_sample_of_the_results_comes_out_again() {
         let base = read(&path, None, row.read_at);
         let again = verify(&base, &mut |name| {
             if !row.runs.iter().any(|run| run.as_deref() == name) {
-                return Err("no run of this row".to_owned());
+                return Err("no run of this row".to_owned().into());
             }
             let case = read(&path, name, row.read_at);
             let session = Session::new(&case).map_err(|problems| problems.to_string())?;

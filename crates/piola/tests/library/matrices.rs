@@ -5,7 +5,8 @@ use piola::geometry::{LatticeSpec, Particles, Shape, fill};
 use piola::neighbors::Domain;
 use piola::operators::{
     BoundaryValueError, Continuation, Cover, DirectedSupport, DualGradient, GradientForm, Mirror,
-    ModifiedMatrix, ReferenceGradient, SparseOperator, SphMatrices, images, raise_ghosts,
+    ModifiedMatrix, ReferenceGradient, SparseOperator, SphMatrices, images, one_by_one,
+    raise_ghosts,
 };
 use piola::{Tensor, Vector};
 use piola_formulas::kernels::Kernel;
@@ -156,7 +157,7 @@ fn forces_with_images_are_the_derivatives_of_the_energy() {
     let (u, direction, data) = (field(0.3), field(5.1), [[0.04, 0.0], [0.0; 2]]);
     let at = continued(&u, &data);
     let mut strained = operator.strained();
-    operator.strain(&at, &mut strained, |_, gradient| gradient * 3.0);
+    operator.strain(&at, &mut strained, one_by_one(|_, gradient| gradient * 3.0));
     let mut forces = vec![Vector::zeros(); at.len()];
     operator.forces(&at, &strained.tension, &mut forces);
     // What matrices are made of is what the cover gives, entry by entry.
@@ -202,7 +203,7 @@ fn linear_fields_have_no_hourglass_energy() {
     let u: Vec<Vector<2>> =
         particles.position.iter().map(|x| Vector::from([0.7, -0.3]) + slope * x).collect();
     let mut strained = operator.strained();
-    operator.strain(&u, &mut strained, |_, _| Tensor::zeros());
+    operator.strain(&u, &mut strained, one_by_one(|_, _| Tensor::zeros()));
     let mut forces = vec![Vector::zeros(); particles.len()];
     operator.forces(&u, &strained.tension, &mut forces);
     assert!(forces.iter().all(|force| force.amax() < 1e-12));

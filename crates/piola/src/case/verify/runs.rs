@@ -1,8 +1,8 @@
 //! The rows of checks, from the runs that they are about.
 
 use super::{
-    CheckRow, Got, RunResults, TrendData, TrendPoint, VariantRun, applicable, format, own_runs,
-    trends,
+    CheckRow, Got, NotRun, RunResults, TrendData, TrendPoint, VariantRun, applicable, format,
+    own_runs, trends,
 };
 use crate::case::model::{
     Case, Check, Expectation, Level, Quantity, Reduction, Sweep, Trend, coordinates,
@@ -12,7 +12,7 @@ use crate::output::Curve;
 use crate::time::Outcome;
 
 /// A variant's name with what came of it.
-type NamedRun<Run> = (Option<String>, Result<VariantRun<Run>, String>);
+type NamedRun<Run> = (Option<String>, Result<VariantRun<Run>, NotRun>);
 
 /// The runs of a case, with the case itself.
 pub(super) struct Runs<'a, Run> {
@@ -49,8 +49,17 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
     fn find(&self, variant: Option<&str>) -> Result<&VariantRun<Run>, String> {
         match self.list.iter().find(|(name, _)| name.as_deref() == variant) {
             Some((_, Ok(run))) => Ok(run),
-            Some((_, Err(reason))) => Err(reason.clone()),
+            Some((_, Err(missing))) => Err(missing.reason.clone()),
             None => Err(format!("there is no run of {}", variant_text(variant))),
+        }
+    }
+
+    /// The case with the overrides of a variant, whether it was run or not.
+    fn case_of(&self, variant: Option<&str>) -> Option<&Case> {
+        let (_, found) = self.list.iter().find(|(name, _)| name.as_deref() == variant)?;
+        match found {
+            Ok(run) => Some(&run.case),
+            Err(missing) => missing.case.as_deref(),
         }
     }
 
@@ -91,10 +100,8 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
     fn row(&self, index: usize, check: &Check, variant: Option<&str>) -> CheckRow {
         let found = self.find(variant);
         // A variant may change parameters that its expected values are computed from.
-        let check = match found {
-            Ok(run) => run.case.checks.get(index).unwrap_or(check),
-            Err(_) => check,
-        };
+        let own = self.case_of(variant).and_then(|case| case.checks.get(index));
+        let check = own.unwrap_or(check);
         let run = variant.map(|name| match self.base.member_label(name) {
             Some(values) => format!("{name} ({values})"),
             None => name.to_owned(),

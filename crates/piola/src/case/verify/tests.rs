@@ -107,7 +107,7 @@ fn rows_of(
     };
     verify(&load(None), &mut |variant| {
         let case = load(variant);
-        result(variant, &case).map(|run| VariantRun { run, case })
+        Ok(VariantRun { run: result(variant, &case)?, case })
     })
 }
 
@@ -199,6 +199,25 @@ fn a_variant_brings_its_own_parameters() {
     ));
     assert!(row.pass, "{row:?}");
     assert_eq!((row.run.as_deref(), row.expected.as_str()), (Some("double"), "4 m"));
+}
+
+/// What is expected of a variant that was left out, too.
+#[test]
+fn a_variant_that_was_not_run_brings_its_own_parameters() {
+    let check = format!(
+        "[[check]]\nsource = \"none\"\n{X}variant = \"double\"\nreduce = \"maximum\"\nexpected = \"amplitude\"\n\
+         tolerance = 0.0\n"
+    );
+    let text = format!("{BASE}{check}");
+    let load = |variant: Option<&str>| {
+        let options = LoadOptions { variant: variant.map(str::to_owned), ..Default::default() };
+        parse(&text, "case.toml", &options).unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let rows = verify::<Fake>(&load(None), &mut |variant| {
+        Err(NotRun { case: Some(Box::new(load(variant))), reason: "it takes long".to_owned() })
+    });
+    assert_eq!(rows[0].expected, "4");
+    assert_eq!(rows[0].reason.as_deref(), Some("it takes long"));
 }
 
 #[test]
