@@ -45,9 +45,10 @@ pub fn array(
         true => value.getattr_opt("ndim")?.map(|axes| axes.extract::<usize>()).transpose()?,
         false => None,
     };
-    let is_uniform = match row {
-        Row::Vector => matches!(axes, None | Some(0 | 1)),
-        Row::Number => matches!(axes, None | Some(0)),
+    let is_uniform = match (row, axes) {
+        (_, None | Some(0)) => true,
+        (Row::Vector, Some(1)) => value.len()? <= 3,
+        _ => false,
     };
     if is_uniform {
         return Ok(None);

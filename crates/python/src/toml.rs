@@ -101,7 +101,7 @@ fn value_at(
         }
     }
     let message = format!(
-        "a case has numbers, strings, booleans, lists, dicts, functions and clouds, not {}: {}",
+        "a case has numbers, strings, booleans, lists, dicts, functions, arrays and clouds, not {}: {}",
         kind(value),
         within(path)
     );

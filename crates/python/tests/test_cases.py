@@ -48,7 +48,7 @@ def test_values_of_numpy_tuples_and_paths_are_values(table, tmp_path):
 @pytest.mark.parametrize(
     ("value", "error", "text"),
     [
-        (object(), TypeError, "a case has numbers, strings, booleans, lists, dicts, functions and clouds, not `object`: in `time.end`"),
+        (object(), TypeError, "a case has numbers, strings, booleans, lists, dicts, functions, arrays and clouds, not `object`: in `time.end`"),
         (None, TypeError, "not `NoneType`: in `time.end`"),
         (1 << 70, ValueError, "the whole number is too large: in `time.end`"),
         ({1: 2}, TypeError, "keys of a case must be strings, not `int`: in `time.end`"),

@@ -31,7 +31,7 @@ pub fn check(arguments: &CheckArguments) -> Result<Exit, Fault> {
 }
 
 /// The stages of a step.
-fn stages(phases: &[&Phase], evaluations: u64, form: StageForm) -> String {
+fn stages(phases: &[&Phase], evaluations: Option<u64>, form: StageForm) -> String {
     if phases.is_empty() {
         return "the scheme of this case does not list its stages\n".to_owned();
     }
@@ -54,10 +54,8 @@ fn stages(phases: &[&Phase], evaluations: u64, form: StageForm) -> String {
             rows.push(row([name, stage.name], traffic, columns));
         }
     }
-    // Of several systems each has its own particles and steps.
-    let particles = phases[0].particles;
-    if phases.iter().all(|phase| phase.particles == particles) {
-        let times = evaluations as f64 / particles.max(1) as f64;
+    if let Some(evaluations) = evaluations {
+        let times = evaluations as f64 / phases[0].particles.max(1) as f64;
         let all = Traffic::sum(phases.iter().flat_map(|phase| &phase.traffic));
         let all = Traffic {
             own: times * all.own,

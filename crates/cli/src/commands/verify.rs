@@ -227,7 +227,8 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
                         Some(variant) => format!("{name} {setting} {variant} ({number} of {all})"),
                         None => format!("{name} {setting} ({number} of {all})"),
                     };
-                    let run = Rc::new(run_quietly(&case, &label, stop)?);
+                    let missing = |reason| NotRun { case: Some(Box::new(case.clone())), reason };
+                    let run = Rc::new(run_quietly(&case, &label, stop).map_err(missing)?);
                     if run.summary.outcome == Outcome::Interrupted {
                         return leave(&case, "interrupted");
                     }

@@ -21,12 +21,13 @@ fn check<const D: usize>(law: &HyperelasticLaw, state: StressState) {
     let law = Reduced::<D>::new(law.clone(), state).expect("the state fits");
     let (all, share) = (gradients::<D>(), 0.7);
     for count in [0, 1, 3, 4, 11] {
-        let (mut stresses, mut moduli) = (vec![SMatrix::zeros(); count], vec![[0.0; 2]; count]);
+        let (mut stresses, mut moduli) =
+            (vec![SMatrix::repeat(1.5); count], vec![[0.25; 2]; count]);
         law.add_stresses(share, &all[..count], &mut stresses);
         law.add_wave_moduli(share, &all[..count], &mut moduli);
         for ((gradient, stress), moduli) in all.iter().zip(&stresses).zip(&moduli) {
-            let own = law.stress(gradient).map(|entry| 0.0 + entry * share);
-            let own_moduli = law.wave_moduli(gradient).map(|modulus| 0.0 + modulus * share);
+            let own = law.stress(gradient).map(|entry| 1.5 + entry * share);
+            let own_moduli = law.wave_moduli(gradient).map(|modulus| 0.25 + modulus * share);
             let both = own.iter().zip(stress).chain(own_moduli.iter().zip(moduli));
             for (one, many) in both {
                 let is_same = one.to_bits() == many.to_bits() || one.is_nan() && many.is_nan();

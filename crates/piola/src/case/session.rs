@@ -171,9 +171,10 @@ impl Session {
         self.executor.scheme.as_mut()
     }
 
-    /// Evaluations of single particles in a step.
-    pub fn evaluations_in_step(&self) -> u64 {
-        self.executor.evaluations_in_step()
+    /// Evaluations of single particles in a step, which run all stages of the formulation; nothing of several systems, and
+    /// where a step solves equations.
+    pub fn evaluations_in_step(&self) -> Option<u64> {
+        self.executor.counted_evaluations()
     }
 
     /// Smallest, mean and largest number of neighbours at the start.

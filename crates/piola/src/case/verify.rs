@@ -76,6 +76,7 @@ pub struct VariantRun<Run> {
 }
 
 /// Why a variant was not run.
+#[derive(Clone, Debug)]
 pub struct NotRun {
     /// The case with its overrides, if it can be read: its checks are described by its own parameters.
     pub case: Option<Box<Case>>,

@@ -192,7 +192,8 @@ fn layers_that_do_not_hold_are_warned_of() {
          material = { kind = \"weakly_compressible\", density = 1000.0, wave_speed = 40.0 }\n[scheme]";
     let behind = warnings(&[("[scheme]", around)]);
     assert!(
-        behind.contains("the wall `vessel` is a layer, which holds fluid at the boundary"),
+        behind
+            .contains("the wall `vessel` is a layer, which holds back fluid only at the boundary"),
         "{behind}"
     );
     let skin = warnings(&[(VESSEL, PLATE), ("thickness = 0.2", "thickness = 0.1")]);

@@ -136,12 +136,17 @@ impl<const D: usize> Shape<D> {
             Kind::Polygon { corners, ends } => Some((polygon::depth(corners, point), *ends)),
             Kind::Union(shapes) => {
                 let all = shapes.iter().map(depth).collect::<Option<Vec<_>>>()?;
-                all.into_iter().reduce(|one, other| (one.0.max(other.0), one.1))
+                let are_level = all.windows(2).all(|both| both[0].1 == both[1].1);
+                all.into_iter()
+                    .filter(|_| are_level)
+                    .reduce(|one, other| (one.0.max(other.0), one.1))
             }
             Kind::Difference { from, remove } => {
-                let all = remove.iter().map(depth).collect::<Option<Vec<_>>>()?;
+                let (whole, all) = (depth(from)?, remove.iter().map(depth));
+                let all = all.collect::<Option<Vec<_>>>()?;
+                let are_level = all.iter().all(|hole| hole.1 == whole.1);
                 let cut = |whole: (f64, _), hole: (f64, _)| (whole.0.min(-hole.0), whole.1);
-                Some(all.into_iter().fold(depth(from)?, cut))
+                are_level.then(|| all.into_iter().fold(whole, cut))
             }
             _ => None,
         }

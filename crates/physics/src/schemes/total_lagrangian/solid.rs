@@ -110,7 +110,10 @@ impl<const D: usize> Solid<D> {
     /// gradients.
     pub fn wave_moduli(&self, first: usize, gradients: &[Tensor<D>], moduli: &mut [[f64; 2]]) {
         for (mixture, own) in self.runs(first, gradients.len()) {
-            mixture.all_wave_moduli(&gradients[own.clone()], &mut moduli[own]);
+            match mixture.is_linear() {
+                true => moduli[own.clone()].fill(self.moduli_at_rest(first + own.start)),
+                false => mixture.all_wave_moduli(&gradients[own.clone()], &mut moduli[own]),
+            }
         }
     }
 

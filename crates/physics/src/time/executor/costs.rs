@@ -15,6 +15,13 @@ impl Executor {
         evaluated(&self.evaluations, self.integrator.steps_in_last())
     }
 
+    /// As [`Self::evaluations_in_step`], of one system whose stages are all that a step evaluates: nothing of several
+    /// systems, and where equations are solved.
+    pub fn counted_evaluations(&self) -> Option<u64> {
+        let is_counted = self.integrator.is_timed_by_steps() && self.scheme.parts().is_empty();
+        is_counted.then(|| self.evaluations_in_step())
+    }
+
     /// What has taken the time of each rank in this run and in those that it has taken over from.
     pub(super) fn costs(&self) -> Vec<RankCosts> {
         if self.has_left {

@@ -350,7 +350,11 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
     }
     for body in &case.bodies {
         let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
-        let thinnest = match &body.shape.value {
+        let mut shape = &body.shape.value;
+        while let model::Shape::Turned { of, .. } = shape {
+            shape = of;
+        }
+        let thinnest = match shape {
             // What is cut out of a body is no part of it.
             model::Shape::Surface(surface) => {
                 let thinnest = surface.facets.get().and_then(|it| it.thinner_than(THIN * spacing));

@@ -36,7 +36,7 @@ pub(super) fn faces<const D: usize>(
     if !is_wall.contains(&true) {
         return Ok((faces, None));
     }
-    // The walls that stay, with their numbers.
+    // The walls that are no bodies of other systems, with their numbers.
     let (mut fixed, moving) = (Vec::new(), moving(case)?);
     let mut bounds = None::<(Vector<D>, Vector<D>)>;
     for (number, (body, is_wall)) in case.bodies.iter().zip(&is_wall).enumerate() {
@@ -121,7 +121,7 @@ pub(super) fn behind_layers<const D: usize>(
         // In the layer itself is no fluid: bodies that overlap have been refused.
         if let Some(found) = thick.first_deeper(fluid.len(), |index| place(fluid[index])) {
             warnings.push(format!(
-                "the wall `{}` is a layer, which holds fluid at the boundary that it follows, and there is fluid behind its \
+                "the wall `{}` is a layer, which holds back fluid only at the boundary that it follows, and there is fluid behind its \
                  far face, at {} m: describe it by two shapes and their `difference`",
                 *body.name,
                 coordinates(particles.position[fluid[found]].as_slice())

@@ -144,7 +144,7 @@ pub(super) static SHAPE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "layer",
-            meaning: "the layer of a given thickness along the boundary of another shape: the wall of a vessel or the skin of a body from the same file. As a wall it holds what is on the other side of that boundary; nothing may be behind its far face",
+            meaning: "the layer of a given thickness along the boundary of another shape: the wall of a vessel or the skin of a body from the same file. As a wall it keeps fluid behind that boundary, on the side where the layer is not; no fluid may touch its far face",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
