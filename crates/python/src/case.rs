@@ -86,6 +86,19 @@ impl Case {
         Ok((read, shared))
     }
 
+    /// Lets go of clouds and arrays that nothing stands for any more.
+    fn release(&mut self) {
+        let changes: Vec<String> = self.changes.iter().map(Change::text).collect();
+        let source = match &self.source {
+            Source::File(_) => "",
+            Source::Text { text, .. } => text,
+        };
+        let texts = || changes.iter().map(String::as_str).chain([source]);
+        let is_used = |name: &str| texts().any(|text| text.contains(&format!("@{name}")));
+        self.registry.clouds.keep(is_used);
+        self.registry.arrays.keep(is_used);
+    }
+
     fn model(&self, py: Python<'_>) -> PyResult<(case::Case, Arc<Shared>)> {
         let (case, shared) = self.read(py)?;
         Ok((case.map_err(|problems| case_error(py, &problems))?, shared))
@@ -215,6 +228,7 @@ impl Case {
             forget(&mut slf.changes, path);
         }
         slf.changes.push(Change { path: path.to_owned(), value });
+        slf.release();
         Ok(slf)
     }
 

@@ -42,6 +42,11 @@ impl<T: ?Sized> Named<T> {
         self.0.iter().find(|(known, _)| known == name).map(|(_, one)| one)
     }
 
+    /// Drops those whose name is not in use.
+    pub fn keep(&mut self, is_used: impl Fn(&str) -> bool) {
+        self.0.retain(|(name, _)| is_used(name));
+    }
+
     /// All names.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.0.iter().map(|(name, _)| name.as_str())
