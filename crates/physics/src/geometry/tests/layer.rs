@@ -31,7 +31,7 @@ fn sphere(halvings: usize) -> Facets {
     for signs in 0..8 {
         let ends: [Vector<3>; 3] =
             std::array::from_fn(|k| axis(k, if signs >> k & 1 == 0 { 1.0 } else { -1.0 }));
-        all.push(if (signs as u32).count_ones() % 2 == 0 {
+        all.push(if (signs as u32).count_ones().is_multiple_of(2) {
             ends
         } else {
             [ends[1], ends[0], ends[2]]
