@@ -59,14 +59,15 @@ fn manual_pages_tell_of_every_command() {
         ("piola-run", ["\\-\\-resume", "newest sound checkpoint"]),
         ("piola-mcp", ["Model Context Protocol", "[default: .]"]),
         ("piola-devices-show", ["\\-\\-language", "no device is needed"]),
+        ("piola-devices-bounds", ["\\-\\-precision", "lower bounds"]),
     ] {
         let text = place.read(&format!("pages/man1/{page}.1"));
         assert!(text.starts_with(".ie") || text.contains(".TH"), "{text}");
         assert_contains(&text, &parts);
     }
     let pages: Vec<_> = fs::read_dir(place.path("pages/man1")).unwrap().collect();
-    // One for each command, `devices show` and the program itself.
-    assert_eq!(pages.len(), 14);
+    // One for each command, those below `devices` and the program itself.
+    assert_eq!(pages.len(), 15);
     for page in pages {
         let text = fs::read_to_string(page.unwrap().path()).unwrap();
         let version = env!("CARGO_PKG_VERSION");
