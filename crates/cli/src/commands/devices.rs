@@ -92,8 +92,9 @@ pub fn bounds(arguments: &BoundsArguments) -> Result<Exit, Fault> {
     rows.push([vec!["all".to_owned()], empty, all.map(milliseconds).to_vec()].concat());
     let mut text = format!(
         "{} neighbours per particle. Operations and bytes are those of a particle; times are lower bounds in ms for a \
-         million particles, from data sheets of the cards: nothing is measured. \
-         The building of neighbour lists is not among them, and passes that go over few particles are counted as over all, so that theirs, and `all` with them, may be more than a bound.\n\n",
+         million particles, from data sheets of the cards: nothing is measured. The building of neighbour lists is not \
+         among them, and passes that go over few particles are counted as over all, so that theirs, and `all` with \
+         them, may be more than a bound.\n\n",
         significant(neighbors, 3)
     );
     align(&rows, None, &[]).iter().for_each(|line| text += &format!("{line}\n"));

@@ -5,6 +5,7 @@ mod device;
 mod growth;
 mod kept;
 mod ranks;
+mod shown;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +16,7 @@ use super::failure::Failure;
 use super::history::{History, Mark};
 use super::integrator::Integrator;
 use super::judgement::supersonic;
-use super::observer::{Moment, ObserveError, Observer};
+use super::observer::{ObserveError, Observer};
 use super::run::Run;
 use super::step::StepControl;
 use super::summary::{Outcome, Progress, Summary};
@@ -187,27 +188,9 @@ impl Executor {
         }
     }
 
-    /// Lets `observer` look from now on, at the moment as it is if that is the start.
-    pub fn observe(&mut self, observer: Box<dyn Observer>) {
-        let (schedule, time) = (observer.schedule(), self.run.clock.time);
-        let is_now = self.run.clock.step == 0 && schedule.includes_start();
-        let due = if is_now { Some(0.0) } else { schedule.next_after(time) };
-        self.observers.push(observer);
-        self.run.due.push(due);
-        self.run.history.add_output(due);
-        self.is_seen = false;
-    }
-
     /// Has the state looked at once more before the next step: somebody has let the formulation look at another one.
     pub fn look_anew(&mut self) {
         self.is_seen = false;
-    }
-
-    /// Its observers, who are shown nothing any more.
-    pub fn take_observers(&mut self) -> Vec<Box<dyn Observer>> {
-        self.run.due.clear();
-        self.run.history.remove_outputs();
-        std::mem::take(&mut self.observers)
     }
 
     /// Changes the state between two steps; what is prescribed stays as it is, and accelerations that
@@ -474,38 +457,5 @@ impl Executor {
         run.lengthen(growth, was_quick, chosen, met);
         self.is_seen = false;
         true
-    }
-
-    /// Shows the moment to the observers for whom it is due, or to all if it is the last.
-    fn show(&mut self, last: bool) -> Result<(), ObserveError> {
-        let time = self.run.clock.time * (1.0 + 1e-12);
-        if last || self.run.due.iter().flatten().any(|due| *due <= time) {
-            let is_new = !self.is_here;
-            self.bring();
-            if is_new {
-                self.ask();
-            }
-        }
-        let Run { clock, tally, state, due, .. } = &mut self.run;
-        let (scheme, observers) = (self.scheme.as_mut(), &mut self.observers);
-        tally.watches.observe.time(|| {
-            let mut now = Observation::new(scheme, clock.time, state);
-            for (observer, due) in observers.iter_mut().zip(due) {
-                let is_due = due.is_some_and(|due| due <= clock.time * (1.0 + 1e-12));
-                if !is_due && !last {
-                    continue;
-                }
-                observer.observe(&mut Moment {
-                    step: clock.step,
-                    step_size: clock.chosen.step,
-                    limiter: clock.chosen.limiter,
-                    health: &clock.health,
-                    now: &mut now,
-                    last,
-                })?;
-                *due = observer.schedule().next_after(clock.time);
-            }
-            Ok(())
-        })
     }
 }

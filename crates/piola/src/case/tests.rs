@@ -29,6 +29,15 @@ pub(super) fn read_with(text: &str, overrides: &[&str]) -> Result<Case, Problems
     parse(text, "case.toml", &LoadOptions { overrides, ..LoadOptions::default() })
 }
 
+/// Positions and energies of a case at 0.1 s, where something has moved.
+fn at_a_tenth(case: &Case) -> (Vec<f64>, Vec<(&'static str, f64)>) {
+    let mut session = Session::new(case).unwrap();
+    session.run_until(0.1).unwrap();
+    let position = session.column("position").unwrap().values;
+    assert!(position.iter().any(|number| *number != 0.0));
+    (position, session.energies())
+}
+
 fn full() -> Case {
     read_with(FULL, &[]).unwrap_or_else(|problems| panic!("{problems}"))
 }

@@ -2,12 +2,12 @@
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
 use std::f64::consts::PI;
-use std::path::Path;
 
-use piola::case::{self, LoadOptions, Session};
+use piola::case::Session;
 use piola::time::Outcome;
 
 use super::escapes::values;
+use super::support::session_beside;
 
 /// A vessel full of water, from one file.
 const VESSEL: &str = r#"
@@ -67,18 +67,12 @@ fn ball() -> String {
 
 /// A session of a case with these changes, in which `vessel.obj` is the ball.
 fn session(changes: &[(&str, &str)]) -> Result<Session, String> {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("vessel.obj"), ball()).unwrap();
-    std::fs::write(folder.path().join("vessel.csv"), "x,y\n0,0\n1,0\n1,1\n0,1\n").unwrap();
     let text = changes.iter().fold(VESSEL.to_owned(), |text, (from, to)| {
         assert!(text.contains(from), "{from}");
         text.replacen(from, to, 1)
     });
-    let path = folder.path().join("case.toml");
-    std::fs::write(&path, text).unwrap();
-    let load = |path: &Path| case::load(path, &LoadOptions::default());
-    let case = load(&path).and_then(|case| Session::new(&case));
-    case.map_err(|problems| problems.to_string())
+    let square = "x,y\n0,0\n1,0\n1,1\n0,1\n";
+    session_beside(&[("vessel.obj", &ball()), ("vessel.csv", square)], &text)
 }
 
 /// The pressure of water at rest grows by `rho g` with the depth, and the vessel bears its weight, to the 3 % that sums over a

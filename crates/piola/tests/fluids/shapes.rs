@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
 use std::f64::consts::PI;
-use std::path::Path;
 
-use piola::case::{self, Finished, LoadOptions, Session};
+use piola::case::{Finished, Session};
 
 use super::escapes::values;
+use super::support::session_beside;
 
 /// A ring of 0.5 m and 0.2 m held under water that is at rest and surrounds it.
 const RING: &str = r#"
@@ -88,13 +88,7 @@ fn above(surface: &str, height: f64) -> String {
 }
 
 fn session(text: &str, surface: &str) -> Result<Session, String> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
-    std::fs::write(path("ring.obj"), surface).unwrap();
-    std::fs::write(path("case.toml"), text).unwrap();
-    let load = |path: &Path| case::load(path, &LoadOptions::default());
-    let case = load(&path("case.toml")).and_then(|case| Session::new(&case));
-    case.map_err(|problems| problems.to_string())
+    session_beside(&[("ring.obj", surface)], text)
 }
 
 fn finished(text: &str, surface: &str) -> Finished {
@@ -208,15 +202,7 @@ fn a_body_is_cut_to_a_drawing() {
              [scheme]\nkind = \"dual_support\"\n[time]\nend = 1.0\n[output]\nevery = 1.0\n"
         )
     };
-    let folder = tempfile::tempdir().unwrap();
-    let built = |shape: &str, drawing: &str| {
-        let path = |name: &str| folder.path().join(name);
-        std::fs::write(path("plate.svg"), drawing).unwrap();
-        std::fs::write(path("case.toml"), case(shape)).unwrap();
-        let case = case::load(&path("case.toml"), &LoadOptions::default());
-        let built = case.and_then(|case| Session::new(&case));
-        built.map_err(|problems| problems.to_string())
-    };
+    let built = |shape: &str, drawing| session_beside(&[("plate.svg", drawing)], &case(shape));
     let drawing = "<svg><path d=\"M0 0h2000v1000h-2000z M1300 500a300 300 0 1 0 -600 0a300 300 0 1 0 600 0z\"/></svg>";
     let body = &built("scale = 0.001", drawing).unwrap().plan().bodies[0];
     let exact = 2.0 - PI * 0.09;

@@ -152,6 +152,16 @@ pub fn session(text: &str, set: &[&str]) -> Result<Session, String> {
     Session::new(&case).map_err(|error| error.to_string())
 }
 
+/// A session of the text of a case with files beside it, or what is wrong with it.
+pub fn session_beside(files: &[(&str, &str)], text: &str) -> Result<Session, String> {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    for (name, content) in files.iter().chain(&[("case.toml", text)]) {
+        std::fs::write(folder.path().join(name), content).expect("files can be written");
+    }
+    let case = case::load(&folder.path().join("case.toml"), &LoadOptions::default());
+    case.and_then(|case| Session::new(&case)).map_err(|problems| problems.to_string())
+}
+
 /// The finished run of the text of a case.
 pub fn run(text: &str, set: &[&str]) -> Finished {
     let session = session(text, set).unwrap_or_else(|error| panic!("{error}"));

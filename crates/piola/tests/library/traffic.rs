@@ -122,12 +122,20 @@ fn total_lagrangian_solids_move_what_their_tables_have() {
     }
 }
 
-/// Walls count by their share of the particles.
+/// Walls count by their share of the particles. Their rows are of indices, each with its start and two lengths, so that their
+/// bytes, and how many neighbours are read, say the same of how many there are.
 #[test]
-fn what_acts_on_few_moves_little() {
+fn walls_count_by_their_share() {
     let mut session = session("ctvf/dam-break", &[]);
-    let scheme = session.scheme();
-    let walls = traffic(scheme, "walls");
-    let rates = traffic(scheme, "rates");
-    assert!(walls.gathered < rates.gathered, "{walls:?}, {rates:?}");
+    let is_wall = session.view("wall", None).expect("it is a field");
+    let numbers = is_wall.numbers();
+    let share = numbers.iter().filter(|it| **it != 0.0).count() as f64 / numbers.len() as f64;
+    assert!((0.05..0.9).contains(&share), "{share}");
+    let walls = traffic(&*session.scheme(), "walls");
+    // In 2D a side takes 8 numbers.
+    let side = 8.0 * NUMBER;
+    let rows = (walls.least - walls.own) / share - side;
+    let neighbors = (walls.gathered / share - rows) / side;
+    let expected = 16.0 + 4.0 * neighbors;
+    assert!((rows - expected).abs() < 1e-9 * expected, "{rows}, not {expected}");
 }

@@ -245,7 +245,10 @@ proptest! {
             for x in [from, to] {
                 let (depth, reach) = (shape.depth(&x), 0.1);
                 let found = probe.depth(&x, reach);
-                let is_same = if depth.abs() < reach { (found - depth).abs() < 1e-12 } else { found * depth > 0.0 && found.abs() >= reach * (1.0 - 1e-12) };
+                let is_same = match depth.abs() < reach {
+                    true => (found - depth).abs() < 1e-12,
+                    false => found * depth > 0.0 && found.abs() >= reach * (1.0 - 1e-12),
+                };
                 prop_assert!(is_same, "{} for {} at {}", found, depth, x);
                 prop_assert_eq!(probe.contains(&x), depth >= 0.0);
             }

@@ -121,8 +121,8 @@ pub(super) fn behind_layers<const D: usize>(
         // In the layer itself is no fluid: bodies that overlap have been refused.
         if let Some(found) = thick.first_deeper(fluid.len(), |index| place(fluid[index])) {
             warnings.push(format!(
-                "the wall `{}` is a layer, which holds back fluid only at the boundary that it follows, and there is fluid behind its \
-                 far face, at {} m: describe it by two shapes and their `difference`",
+                "the wall `{}` is a layer, which holds back fluid only at the boundary that it follows, and there is fluid \
+                 behind its far face, at {} m: describe it by two shapes and their `difference`",
                 *body.name,
                 coordinates(particles.position[fluid[found]].as_slice())
             ));

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::super::*;
+use super::at_a_tenth;
 use crate::boundaries::SpaceTime;
 
 /// `a x + b sin(t)`, as `a * x + b * sin(t)` of a case.
@@ -53,13 +54,7 @@ fn functions_give_the_bits_of_expressions() {
         text("\"@start\"", "\"@push\"", "y = \"@floor\""),
         text("\"0.25 * x\"", "\"2 * x + 3 * sin(t)\"", "y = \"0.5 * sin(t)\""),
     ]
-    .map(|text| {
-        let case = parse(&text, "case.toml", &options(known())).unwrap();
-        let mut session = Session::new(&case).unwrap();
-        session.run_until(0.1).unwrap();
-        (session.column("position").unwrap().values, session.energies())
-    });
-    assert!(one.0.iter().any(|number| *number != 0.0));
+    .map(|text| at_a_tenth(&parse(&text, "case.toml", &options(known())).unwrap()));
     assert_eq!(one, other);
 }
 
