@@ -306,6 +306,10 @@ pub struct VerifyArguments {
     /// existing results of other cases are kept
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub page: Option<PathBuf>,
+    /// Keep the results of each run in a folder of its own below this one, and continue runs that were
+    /// interrupted there
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub keep: Option<PathBuf>,
     /// Only the case with this id, or in a folder of this name
     #[arg(long, value_name = "ID")]
     pub only: Option<String>,

@@ -1,7 +1,7 @@
 //! `piola verify`: all cases below some folders, and one table of their checks.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -228,7 +228,10 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
                         None => format!("{name} {setting} ({number} of {all})"),
                     };
                     let missing = |reason| NotRun { case: Some(Box::new(case.clone())), reason };
-                    let run = Rc::new(run_quietly(&case, &label, stop).map_err(missing)?);
+                    let kept = arguments.keep.as_ref();
+                    let kept = kept.map(|keep| kept_folder(keep, path, *level, variant));
+                    let run = run_quietly(&case, &label, kept.as_deref(), stop);
+                    let run = Rc::new(run.map_err(missing)?);
                     if run.summary.outcome == Outcome::Interrupted {
                         return leave(&case, "interrupted");
                     }
@@ -253,13 +256,37 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
     }
 }
 
-/// Runs a case without files.
-fn run_quietly(case: &Case, label: &str, stop: &AtomicBool) -> Result<Finished, String> {
-    let session =
+/// Runs a case: without files, or with those of a run that is kept in a folder, which it continues.
+fn run_quietly(
+    case: &Case,
+    label: &str,
+    kept: Option<&Path>,
+    stop: &AtomicBool,
+) -> Result<Finished, String> {
+    let mut session =
         Session::new(case).map_err(|problems| problems.to_string().trim_end().to_owned())?;
     let mut display = Display::new(label, Audience::Person);
-    let finished = session.run(stop, &mut |progress| display.update(progress));
-    finished.map_err(|error| error.to_string())
+    let place = match kept {
+        Some(folder) if folder.exists() => session.resume_from(folder),
+        Some(folder) => session.write_to(folder),
+        None => Ok(()),
+    };
+    let run = || session.run(stop, &mut |progress| display.update(progress));
+    place.and_then(|()| run()).map_err(|error| match kept {
+        Some(folder) => format!("{}: {error}", folder.display()),
+        None => error.to_string(),
+    })
+}
+
+/// Where a run is kept: below `keep`, at the path of the case, in a folder called after setting and variant.
+fn kept_folder(keep: &Path, path: &Path, level: Level, variant: Option<&str>) -> PathBuf {
+    let stem = path.with_extension("");
+    // Without `..` and the root: what is kept stays below `keep`.
+    let is_name = |part: &Component<'_>| matches!(part, Component::Normal(_));
+    let mut names: Vec<Component<'_>> = stem.components().filter(is_name).collect();
+    names.pop_if(|name| name.as_os_str() == "case");
+    let run = [Some(level.name()), variant].into_iter().flatten().collect::<Vec<_>>().join("-");
+    names.iter().fold(keep.to_owned(), |folder, name| folder.join(name)).join(run)
 }
 
 /// The name of the folder of a case file, which stands for its id where it has none.

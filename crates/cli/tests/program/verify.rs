@@ -177,3 +177,32 @@ fn a_case_that_takes_long_runs_only_if_asked() {
     let (stdout, _) = place.run("verify bar --full --long=base", 0);
     assert_contains(&stdout, &["2 checks of 1 case: 2 passed"]);
 }
+
+#[test]
+fn runs_that_are_kept_are_continued() {
+    let place = Place::new();
+    place.write(
+        "bar/case.toml",
+        BAR.replace("version = 1", "version = 1\ncheckpoint = { every_steps = 1 }"),
+    );
+    let verdict = |keep: &str| {
+        let (stdout, _) = place.run(&format!("verify bar --full {keep}"), 0);
+        stdout.split(" (").next().unwrap().to_owned()
+    };
+    let plain = verdict("");
+    // The first part of a run, as an interruption leaves it.
+    place.run("run bar/case.toml --set time.max_steps=3 --out kept/bar/case", 3);
+    assert_eq!(verdict("--keep kept"), plain);
+    let resumed = |folder: &str| {
+        let record = place.read(&format!("kept/bar/{folder}/run.json"));
+        !record.contains("\"resumed_at\": []")
+    };
+    assert!(resumed("case"), "it did not begin where the other had ended");
+    assert!(!resumed("coarse"), "nothing was there to continue");
+    // What has ended is not run again, and tells the same.
+    assert_eq!(verdict("--keep kept"), plain);
+    assert!(resumed("coarse"));
+    place.write("bar/case.toml", BAR.replace("spacing = 0.2", "spacing = 0.1"));
+    let (stdout, _) = place.run("verify bar --full --keep kept", 1);
+    assert_contains(&stdout, &["kept/bar/case"]);
+}
