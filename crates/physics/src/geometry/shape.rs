@@ -359,7 +359,7 @@ impl<const D: usize> Shape<D> {
     }
 
     /// What was turned, the point and the rotation, where the shape is one that was turned as a whole.
-    pub(crate) fn as_turned(&self) -> Option<(&Self, &Vector<D>, &Tensor<D>)> {
+    pub fn as_turned(&self) -> Option<(&Self, &Vector<D>, &Tensor<D>)> {
         match &self.0 {
             Kind::Turned { of, about, rotation } => Some((of, about, rotation)),
             _ => None,

@@ -28,6 +28,10 @@ pub enum Reduction<Reference = Curve> {
     Maximum,
     /// The smallest value.
     Minimum,
+    /// The time in s of the largest value.
+    MaximumTime,
+    /// The time in s of the smallest value.
+    MinimumTime,
     /// The last value.
     Final,
     /// The first value.
@@ -122,6 +126,8 @@ macro_rules! registry {
 registry! {
     "maximum", None, Self::Maximum, "the largest value";
     "minimum", None, Self::Minimum, "the smallest value";
+    "maximum_time", None, Self::MaximumTime, "the time in s of the first row with the largest value";
+    "minimum_time", None, Self::MinimumTime, "the time in s of the first row with the smallest value";
     "final", None, Self::Final, "the last value";
     "initial", None, Self::Initial, "the first value";
     "at", Time, Self::At(_), "the value at a time, or at a distance along a line, interpolated between rows";
@@ -166,6 +172,8 @@ impl<Reference> Reduction<Reference> {
         let all = [
             Self::Maximum,
             Self::Minimum,
+            Self::MaximumTime,
+            Self::MinimumTime,
             Self::Final,
             Self::Initial,
             Self::Mean,
@@ -207,6 +215,7 @@ impl<Reference> Reduction<Reference> {
     pub fn unit(&self, unit: &str) -> String {
         match self {
             Self::Period | Self::ExtremumTime(_) | Self::ZeroTime(_) | Self::Centroid => "s".into(),
+            Self::MaximumTime | Self::MinimumTime => "s".into(),
             Self::ZeroPlace(_) => "m".into(),
             Self::Frequency => "1/s".into(),
             Self::Integral if unit == "1" => "s".into(),
@@ -247,6 +256,8 @@ impl<Reference> Reduction<Reference> {
         Ok(match self {
             Self::Maximum => Reduction::Maximum,
             Self::Minimum => Reduction::Minimum,
+            Self::MaximumTime => Reduction::MaximumTime,
+            Self::MinimumTime => Reduction::MinimumTime,
             Self::Final => Reduction::Final,
             Self::Initial => Reduction::Initial,
             Self::At(time) => Reduction::At(*time),
@@ -305,6 +316,8 @@ impl Reduction {
         match self {
             Self::Maximum => Ok(history.range()[1]),
             Self::Minimum => Ok(history.range()[0]),
+            Self::MaximumTime => Ok(history.first_time(history.range()[1])),
+            Self::MinimumTime => Ok(history.first_time(history.range()[0])),
             Self::Final => Ok(history.last()),
             Self::Initial => Ok(history.first()),
             Self::At(time) => history.at(*time),

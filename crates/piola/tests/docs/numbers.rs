@@ -52,7 +52,8 @@ fn whole(text: &str) -> Vec<String> {
     numbers.filter(|number| number.parse::<u64>().is_ok_and(|number| number >= 20)).collect()
 }
 
-/// All numbers that a case has results of, or files. Those of a table are results, or what is expected of them.
+/// All numbers that a case has results of, with their ratios to what is expected, or files. Those of a table are results, or
+/// what is expected of them.
 fn known(case: &CaseResults, folder: &str, is_table: bool) -> (Vec<f64>, Vec<f64>) {
     let cells = |text: &str| {
         let words = text.split([' ', ',', ';', '(', ')', '=']).map(str::to_owned);
@@ -62,12 +63,16 @@ fn known(case: &CaseResults, folder: &str, is_table: bool) -> (Vec<f64>, Vec<f64
         let results = [&row.got, &row.expected, &row.off_by].into_iter().chain(&row.members);
         let rest = [&row.quantity, &row.tolerance, &row.source].into_iter();
         let rest = rest.chain(&row.run).chain(&row.bound).filter(|_| !is_table);
-        results.chain(rest).flat_map(|text| cells(text)).collect::<Vec<_>>()
+        let ratio = cells(&row.got).first().zip(cells(&row.expected).first()).map(|(a, b)| a / b);
+        let all = results.chain(rest).flat_map(|text| cells(text));
+        all.chain(ratio.filter(|_| !is_table)).collect::<Vec<_>>()
     });
     let files = below(folder, &["case.toml", ".csv", ".py"]);
-    let texts = files
-        .iter()
-        .flat_map(|file| tokens(&file.text))
+    // What a case says of its results is no evidence of them.
+    let lines = files.iter().flat_map(|file| file.text.lines());
+    let texts = lines
+        .filter(|line| !line.starts_with("unmet = "))
+        .flat_map(tokens)
         .map(|word| word.parse().expect("a number"));
     let particles = case.particles.map(|count| count as f64);
     (numbers.chain(particles).collect(), texts.collect())

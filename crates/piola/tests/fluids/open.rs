@@ -335,10 +335,46 @@ fn openings_that_cannot_work_are_refused() {
 /// Where both ends are prescribed and do not agree there is a warning with the difference.
 #[test]
 fn flow_rates_that_do_not_balance_are_told() {
-    let set = ["body.outlet.opening={ normal = [-1.0, 0.0], velocity = ['0.5', '0'] }"];
-    let mut session = session(&stream(2), &set).expect("it is built");
-    let warnings = session.plan().warnings;
-    assert!(warnings.iter().any(|it| it.contains("2.000e-1 m^D/s more flow in")), "{warnings:?}");
+    let warned = |set: &[&str], what: &str| {
+        let warnings = session(&stream(2), set).expect("it is built").plan().warnings;
+        assert!(warnings.iter().any(|it| it.contains(what)), "{warnings:?}");
+    };
+    let out = "body.outlet.opening={ normal = [-1.0, 0.0], velocity = ['0.5', '0'] }";
+    warned(&[out], "2.000e-1 m^D/s more flow in than out at t = 0 s");
+    // Also where they agree at first: 0.4 m times a 32nd of 1 m/s.
+    let same = out.replace("0.5", "1");
+    let grows = "body.inlet.opening.velocity=['1 + t', '0']";
+    warned(&[&same, grows], "1.250e-2 m^D/s more flow in than out at t = 0.03125 s");
+}
+
+/// Where the pressure is prescribed at several openings and follows slowly, fluid circulates through them in silence.
+#[test]
+fn pressures_that_follow_slowly_at_several_openings_are_told() {
+    let body = |name: &str, min: &str, max: &str, rest: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nshape = {{ kind = \"box\", min = {min}, max = {max} }}\n\
+             spacing = 0.1\nlattice = {{ on = \"cells\" }}\n\
+             material = {{ kind = \"weakly_compressible\", density = 1.0, wave_speed = 12.0 }}\n{rest}\n"
+        )
+    };
+    let end = |normal: &str| format!("opening = {{ normal = {normal}, pressure = \"1\" }}");
+    let inlet = "opening = { normal = [1.0, 0.0], flow_rate = \"0.8 * min(t, 1)\" }";
+    let tee = [
+        "version = 1\ntitle = \"A tee\"\ndimension = 2\nscheme = { kind = \"transport_velocity\" }\n\
+         time = { end = 8.0 }\n"
+            .to_owned(),
+        body("water", "[0.0, -1.5]", "[2.5, 1.5]", ""),
+        body("inlet", "[-0.4, -0.5]", "[0.0, 0.5]", inlet),
+        body("up", "[1.5, 1.5]", "[2.5, 1.9]", &end("[0.0, -1.0]")),
+        body("down", "[1.5, -1.9]", "[2.5, -1.5]", &end("[0.0, 1.0]")),
+    ];
+    let warned = |set: &[&str]| {
+        let warnings = session(&tee.concat(), set).expect("it is built").plan().warnings;
+        warnings.iter().any(|it| it.contains("it may circulate through them"))
+    };
+    assert!(warned(&[]));
+    assert!(!warned(&["body.up.opening.relaxation=1.0", "body.down.opening.relaxation=1.0"]));
+    assert!(!warned(&["body.up.opening={ normal = [0.0, -1.0], flow_rate = '-0.4' }"]));
 }
 
 /// A stream that swings, under pressure.

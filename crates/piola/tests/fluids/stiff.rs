@@ -258,6 +258,10 @@ fn what_is_wrong_with_the_size_of_a_plate_names_it() {
     let refused = |set: &[&str]| built(DAM, set).err().expect("it is refused");
     let thin = refused(&["parameters.thickness=0.025", "parameters.pd=0.025"]);
     assert!(thin.contains("the solid `plate` is 0.50 spacings of the fluid thick"), "{thin}");
+    // Across its own axes, however it is turned.
+    let turned = "body.plate.shape={ kind = 'turned', angle = 0.5, about = [0.7, 0.4], of = { kind = 'box', min = [0.6, 0.2], max = [0.625, 0.8] } }";
+    let turned = refused(&[turned, "parameters.pd=0.025"]);
+    assert!(turned.contains("the solid `plate` is 0.50 spacings of the fluid thick"), "{turned}");
     let uneven = refused(&["parameters.thickness=0.17", "parameters.pd=0.01"]);
     assert!(uneven.contains("to the fluid `water` the solid is a wall"), "{uneven}");
     assert!(uneven.contains("body `plate`"), "{uneven}");

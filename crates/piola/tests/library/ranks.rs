@@ -429,7 +429,7 @@ fn cases_are_shared_but_for_factors_and_what_is_refused() {
 }
 
 /// The cases of which several ranks have a part each.
-const SHARED: [&str; 63] = [
+const SHARED: [&str; 64] = [
     "dam-break-box",
     "dam-break-plate",
     "dam-break-plate-3d",
@@ -480,6 +480,7 @@ const SHARED: [&str; 63] = [
     "step",
     "turek-hron",
     "turek-hron-flow",
+    "vessel",
     "wave-tank",
     "waves",
     "presets",

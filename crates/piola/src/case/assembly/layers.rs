@@ -17,7 +17,9 @@ fn layers<const D: usize>(case: &Case, body: &Body, domain: &Domain<D>) -> Optio
     if body.shape.is_from_file() {
         return None;
     }
-    let (min, max) = bodies::shape::<D>(case, body, &body.shape).ok()?.bounding_box();
+    let shape = bodies::shape::<D>(case, body, &body.shape).ok()?;
+    // The lattice of what is turned as a whole is turned with it.
+    let (min, max) = shape.as_turned().map_or(&shape, |(of, ..)| of).bounding_box();
     let extents = (0..D).filter_map(|axis| {
         let (extent, spacing) = (max[axis] - min[axis], *body.spacing.get(axis)?);
         let is_round = domain.periodic()[axis]

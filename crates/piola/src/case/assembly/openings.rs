@@ -24,6 +24,34 @@ const RESERVE: f64 = 0.05;
 /// What of all inflow may be missing among the outflow where the fluid can go nowhere else.
 const UNBALANCED: f64 = 1e-6;
 
+/// Times between start and end of a run, both included, at which prescribed velocities are compared.
+const TIMES: u32 = 33;
+
+/// Mean pressures at several openings may take this part of the time in which the fluid passes through all bodies.
+const SLOW: f64 = 0.5;
+
+/// What velocities that are prescribed at an opening do at [`TIMES`].
+struct Inflow {
+    /// Volumes that come in, in m^D/s.
+    rates: Vec<f64>,
+    /// The largest mean speed along the normal in m/s.
+    speed: f64,
+}
+
+/// Times of a run that are looked at, in s.
+fn times(case: &Case) -> impl Iterator<Item = f64> {
+    let end = *case.time.end;
+    (0..TIMES).map(move |number| end * f64::from(number) / f64::from(TIMES - 1))
+}
+
+/// The diagonal of the box around all particles in m.
+fn extent<const D: usize>(particles: &Particles<D>) -> Option<f64> {
+    let ends = particles.position.iter().fold(None::<(Vector<D>, Vector<D>)>, |ends, x| {
+        Some(ends.map_or((*x, *x), |(low, high)| (low.inf(x), high.sup(x))))
+    });
+    ends.map(|(low, high)| (high - low).norm())
+}
+
 /// A component of a velocity that is a flow rate over an area.
 struct Share {
     rate: Arc<dyn SpaceTime>,
@@ -69,13 +97,13 @@ pub(super) fn open<const D: usize>(
     };
     let mut open =
         OpenBoundaries { buffers: vec![0; particles.len()], ..OpenBoundaries::default() };
-    let (mut problems, mut rates) = (Vec::new(), Vec::new());
+    let (mut problems, mut inflows) = (Vec::new(), Vec::new());
     for (number, body) in buffers() {
         let Some(opening) = &body.opening else { continue };
         match boundary(case, particles, (number, body, opening), support) {
-            Ok((boundary, rate)) => {
+            Ok((boundary, inflow)) => {
                 open.all.push(boundary);
-                rates.push(rate);
+                inflows.push(inflow);
                 let own = particles.body.iter().zip(&mut open.buffers);
                 for (_, buffer) in own.filter(|(body, _)| **body == number) {
                     *buffer = open.all.len() as u32;
@@ -95,7 +123,9 @@ pub(super) fn open<const D: usize>(
     let in_buffers =
         particles.body.iter_mut().zip(&open.buffers).filter(|(_, buffer)| **buffer > 0);
     in_buffers.for_each(|(body, _)| *body = fluid);
-    let warnings = unbalanced(&rates, settings.settings.free_surface).into_iter().collect();
+    let unbalanced = unbalanced(case, &inflows, settings.settings.free_surface);
+    let slow = extent(particles).and_then(|extent| slow(&open, &inflows, extent));
+    let warnings = unbalanced.into_iter().chain(slow).collect();
     let in_buffers = open.buffers.iter().filter(|buffer| **buffer > 0).count();
     let all = particles.body.iter().filter(|body| **body == fluid).count();
     let most = (RESERVE * all as f64).ceil() as usize;
@@ -151,13 +181,13 @@ fn cut_off<const D: usize>(
     Ok(cut.map(problem).collect())
 }
 
-/// The boundary of one buffer, with the volume that comes in at the start in m^D/s, if it is prescribed.
+/// The boundary of one buffer, with what comes in, if it is prescribed.
 fn boundary<const D: usize>(
     case: &Case,
     particles: &Particles<D>,
     (number, body, opening): (u32, &Body, &Located<Opening>),
     support: f64,
-) -> Result<(OpenBoundary<D>, Option<f64>), Problem> {
+) -> Result<(OpenBoundary<D>, Option<Inflow>), Problem> {
     let refuse = |message: String, label: &str, help: &str| {
         Err(case.problem_at(opening.place, message, label, Some(help.to_owned())))
     };
@@ -247,12 +277,9 @@ fn boundary<const D: usize>(
         return refuse(message, "not finite", "correct the expression");
     }
     let relaxation = opening.relaxation.unwrap_or_else(|| {
-        let ends = particles.position.iter().fold(None::<(Vector<D>, Vector<D>)>, |ends, x| {
-            Some(ends.map_or((*x, *x), |(low, high)| (low.inf(x), high.sup(x))))
-        });
-        let size = ends.map_or(length, |(low, high)| (high - low).norm());
         let density = body.material.density();
-        WAYS * size / (body.material.bulk_modulus(case.dimension) / density).sqrt()
+        WAYS * extent(particles).unwrap_or(length)
+            / (body.material.bulk_modulus(case.dimension) / density).sqrt()
     });
     let boundary = OpenBoundary {
         name: name.clone(),
@@ -295,26 +322,51 @@ fn boundary<const D: usize>(
             "cut the wall off there, or make the opening smaller",
         );
     }
-    let rate = matches!(boundary.flow, Flow::Velocity(_)).then(|| {
-        let inwards = own().map(|a| {
-            let velocity = boundary.velocity(&particles.position[a], 0.0);
-            velocity.map_or(0.0, |velocity| particles.volume[a] * velocity.dot(&normal))
-        });
-        inwards.sum::<f64>() / length
+    let inflow = matches!(boundary.flow, Flow::Velocity(_)).then(|| {
+        let rate = |time: f64| {
+            let inwards = own().map(|a| {
+                let velocity = boundary.velocity(&particles.position[a], time);
+                velocity.map_or(0.0, |velocity| particles.volume[a] * velocity.dot(&normal))
+            });
+            inwards.sum::<f64>() / length
+        };
+        let rates: Vec<f64> = times(case).map(rate).collect();
+        let most = rates.iter().fold(0.0, |most: f64, rate| most.max(rate.abs()));
+        Inflow { rates, speed: most * length / volume }
     });
-    Ok((boundary, rate))
+    Ok((boundary, inflow))
 }
 
 /// A warning of flow rates that do not balance where all are prescribed and the fluid has no surface to rise.
-fn unbalanced(rates: &[Option<f64>], has_surface: bool) -> Option<String> {
-    let all: Option<Vec<f64>> = rates.iter().copied().collect();
+fn unbalanced(case: &Case, inflows: &[Option<Inflow>], has_surface: bool) -> Option<String> {
+    let all: Option<Vec<&Inflow>> = inflows.iter().map(Option::as_ref).collect();
     let all = all.filter(|_| !has_surface)?;
-    let (sum, size): (f64, f64) = (all.iter().sum(), all.iter().map(|rate| rate.abs()).sum());
-    (sum.abs() > UNBALANCED * size).then(|| {
+    let at = |(number, time): (usize, f64)| {
+        let rates = || all.iter().map(|inflow| inflow.rates[number]);
+        let (sum, size): (f64, f64) = (rates().sum(), rates().map(f64::abs).sum());
+        (sum.abs() > UNBALANCED * size).then_some((time, sum))
+    };
+    let (time, sum) = times(case).enumerate().find_map(at)?;
+    Some(format!(
+        "velocities or flow rates are prescribed at all openings, and {sum:.3e} m^D/s more flow in than out at t = \
+         {time} s: the pressure will rise or fall without bound; prescribe the pressure at one of them"
+    ))
+}
+
+/// A warning of mean pressures that follow slowly at several openings, theory (87): fluid may circulate through them.
+fn slow<const D: usize>(
+    open: &OpenBoundaries<D>,
+    inflows: &[Option<Inflow>],
+    extent: f64,
+) -> Option<String> {
+    let ends = || open.all.iter().filter(|opening| matches!(opening.flow, Flow::Pressure(_)));
+    let speed = inflows.iter().flatten().fold(0.0, |most: f64, inflow| most.max(inflow.speed));
+    let (way, time) = (extent / speed, ends().fold(0.0, |most: f64, end| most.max(end.relaxation)));
+    (ends().count() > 1 && time > SLOW * way).then(|| {
         format!(
-            "velocities or flow rates are prescribed at all openings, and {sum:.3e} m^D/s more \
-             flow in than out at the start: the pressure will rise or fall without bound; \
-             prescribe the pressure at one of them"
+            "pressures are prescribed at several openings and follow within {time:.2} s, as long as the fluid takes to pass: \
+             {way:.2} s; it may circulate through them, so set `relaxation` of each `opening` to at most {:.2}",
+            SLOW * way
         )
     })
 }

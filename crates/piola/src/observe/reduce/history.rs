@@ -58,6 +58,12 @@ impl<'a> History<'a> {
         self.values.iter().fold(start, |[low, high], &value| [low.min(value), high.max(value)])
     }
 
+    /// The time of the first row with this value, or of the first row if there is none.
+    pub fn first_time(&self, value: f64) -> f64 {
+        let row = self.values.iter().position(|&other| other == value);
+        self.time[row.unwrap_or(0)]
+    }
+
     /// The value at `time`, which is moved to the nearer end where it lies outside.
     pub fn interpolate(&self, time: f64) -> f64 {
         let after = self.time.partition_point(|&row| row <= time);

@@ -44,6 +44,8 @@ fn all() -> Vec<Reduction> {
     vec![
         Reduction::Maximum,
         Reduction::Minimum,
+        Reduction::MaximumTime,
+        Reduction::MinimumTime,
         Reduction::Final,
         Reduction::Initial,
         Reduction::At(0.5),
@@ -203,6 +205,15 @@ fn extrema_of_a_sine_are_found_between_rows() {
         let error = refused(Reduction::Extremum(wanted), &wave);
         assert_eq!(error, ReduceError::NoSuchExtremum { wanted, found });
     }
+}
+
+#[test]
+fn the_largest_value_has_a_time_of_its_own() {
+    // The first maximum is not the largest, and the largest is there twice.
+    let rows = (vec![0.0, 0.5, 1.5, 2.0, 3.0, 4.0], vec![0.0, 2.0, -1.0, 3.0, 3.0, -1.0]);
+    assert_eq!(reduce(Reduction::MaximumTime, &rows), 2.0);
+    assert_eq!(reduce(Reduction::MinimumTime, &rows), 1.5);
+    assert!(reduce(Reduction::ExtremumTime(1), &rows) < 0.6);
 }
 
 #[test]
