@@ -30,4 +30,13 @@ def facets():
                 yield a, c, d
 
 
+def enclosed():
+    """The volume that the facets enclose."""
+    total = 0.0
+    for (ax, ay, az), (bx, by, bz), (cx, cy, cz) in stl.rounded(facets()):
+        total += ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+    return total / 6
+
+
 stl.write("vessel.stl", "a sphere", facets())
+print(f"half of the volume: {enclosed() / 2:.7f} m^3")

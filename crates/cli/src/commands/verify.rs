@@ -273,7 +273,7 @@ fn run_quietly(
     };
     let run = || session.run(stop, &mut |progress| display.update(progress));
     place.and_then(|()| run()).map_err(|error| match kept {
-        Some(folder) => format!("{}: {error}", folder.display()),
+        Some(folder) => format!("{}: {error}\nremove that folder to begin anew", folder.display()),
         None => error.to_string(),
     })
 }

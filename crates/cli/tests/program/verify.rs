@@ -204,5 +204,5 @@ fn runs_that_are_kept_are_continued() {
     assert!(resumed("coarse"));
     place.write("bar/case.toml", BAR.replace("spacing = 0.2", "spacing = 0.1"));
     let (stdout, _) = place.run("verify bar --full --keep kept", 1);
-    assert_contains(&stdout, &["kept/bar/case"]);
+    assert_contains(&stdout, &["kept/bar/case", "remove that folder to begin anew"]);
 }

@@ -231,7 +231,7 @@ pub fn verify<Run: RunResults>(base: &Case, run: &mut RunVariant<'_, Run>) -> Ve
     let rows = applicable(base).flat_map(|(index, check)| {
         let mut rows = runs.rows(index, check);
         if let Some(why) = &check.unmet {
-            excuse(&mut rows, why);
+            excuse(&runs, &mut rows, why);
         }
         rows
     });
@@ -240,7 +240,7 @@ pub fn verify<Run: RunResults>(base: &Case, run: &mut RunVariant<'_, Run>) -> Ve
 
 /// Gives the rows of a check that is known not to be met the reason; where all are met, there is
 /// nothing to excuse, and the mark is the fault.
-fn excuse(rows: &mut [CheckRow], why: &str) {
+fn excuse<Run: RunResults>(runs: &Runs<'_, Run>, rows: &mut [CheckRow], why: &str) {
     if rows.iter().all(|row| row.pass) {
         for row in rows {
             row.pass = false;
@@ -248,8 +248,9 @@ fn excuse(rows: &mut [CheckRow], why: &str) {
         }
         return;
     }
-    // What could not be evaluated is no known result.
-    for row in rows.iter_mut().filter(|row| !row.pass && row.got.is_some()) {
+    // What could not be evaluated is no known result, unless it is known why.
+    let is_known = |row: &CheckRow| row.got.is_some() || runs.is_known_to_fail(row);
+    for row in rows.iter_mut().filter(|row| !row.pass && is_known(row)) {
         row.unmet = Some(why.to_owned());
     }
 }

@@ -224,6 +224,14 @@ pub(super) fn around<const D: usize>(
     surroundings(&shape, &spec, reach).map_err(|error| refuse_spacing(case, body, &error))
 }
 
+/// The corners of the box around places; turned inside out where there are none.
+pub(super) fn box_around<'a, const D: usize>(
+    places: impl IntoIterator<Item = &'a Vector<D>>,
+) -> (Vector<D>, Vector<D>) {
+    let ends = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
+    places.into_iter().fold(ends, |(least, most), x| (least.inf(x), most.sup(x)))
+}
+
 /// The body of fluid whose spacing another one has: that of another system, which is a wall to the fluid.
 pub(super) fn lender<'a>(case: &'a Case, body: &Body) -> Option<&'a Body> {
     let lender = case.bodies.iter().find(|other| other.spacing.place == body.spacing.place);

@@ -27,7 +27,8 @@ const UNBALANCED: f64 = 1e-6;
 /// Times between start and end of a run, both included, at which prescribed velocities are compared.
 const TIMES: u32 = 33;
 
-/// Mean pressures at several openings may take this part of the time in which the fluid passes through all bodies.
+/// Mean pressures at several openings may take this part of the time in which the fluid passes through all bodies. Of a tee
+/// that it passes in 5.6 s, with two such openings, fluid circulates through both with 7.4 s, and does not with 3 s.
 const SLOW: f64 = 0.5;
 
 /// What velocities that are prescribed at an opening do at [`TIMES`].
@@ -45,11 +46,9 @@ fn times(case: &Case) -> impl Iterator<Item = f64> {
 }
 
 /// The diagonal of the box around all particles in m.
-fn extent<const D: usize>(particles: &Particles<D>) -> Option<f64> {
-    let ends = particles.position.iter().fold(None::<(Vector<D>, Vector<D>)>, |ends, x| {
-        Some(ends.map_or((*x, *x), |(low, high)| (low.inf(x), high.sup(x))))
-    });
-    ends.map(|(low, high)| (high - low).norm())
+fn extent<const D: usize>(particles: &Particles<D>) -> f64 {
+    let (low, high) = bodies::box_around(&particles.position);
+    (high - low).norm()
 }
 
 /// A component of a velocity that is a flow rate over an area.
@@ -124,7 +123,7 @@ pub(super) fn open<const D: usize>(
         particles.body.iter_mut().zip(&open.buffers).filter(|(_, buffer)| **buffer > 0);
     in_buffers.for_each(|(body, _)| *body = fluid);
     let unbalanced = unbalanced(case, &inflows, settings.settings.free_surface);
-    let slow = extent(particles).and_then(|extent| slow(&open, &inflows, extent));
+    let slow = slow(&open, &inflows, extent(particles));
     let warnings = unbalanced.into_iter().chain(slow).collect();
     let in_buffers = open.buffers.iter().filter(|buffer| **buffer > 0).count();
     let all = particles.body.iter().filter(|body| **body == fluid).count();
@@ -278,8 +277,7 @@ fn boundary<const D: usize>(
     }
     let relaxation = opening.relaxation.unwrap_or_else(|| {
         let density = body.material.density();
-        WAYS * extent(particles).unwrap_or(length)
-            / (body.material.bulk_modulus(case.dimension) / density).sqrt()
+        WAYS * extent(particles) / (body.material.bulk_modulus(case.dimension) / density).sqrt()
     });
     let boundary = OpenBoundary {
         name: name.clone(),
@@ -364,8 +362,8 @@ fn slow<const D: usize>(
     let (way, time) = (extent / speed, ends().fold(0.0, |most: f64, end| most.max(end.relaxation)));
     (ends().count() > 1 && time > SLOW * way).then(|| {
         format!(
-            "pressures are prescribed at several openings and follow within {time:.2} s, as long as the fluid takes to pass: \
-             {way:.2} s; it may circulate through them, so set `relaxation` of each `opening` to at most {:.2}",
+            "pressures are prescribed at several openings and follow within {time:.2} s, in which the fluid may circulate through \
+             them: it passes in {way:.2} s; set `relaxation` of each `opening` to at most {:.2}",
             SLOW * way
         )
     })

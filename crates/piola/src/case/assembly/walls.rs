@@ -41,7 +41,11 @@ pub(super) fn faces<const D: usize>(
     let mut bounds = None::<(Vector<D>, Vector<D>)>;
     for (number, (body, is_wall)) in case.bodies.iter().zip(&is_wall).enumerate() {
         let (low, high) = match (&body.shape.value, is_wall) {
-            (shape, false) if shape.is_from_file() => box_around(particles, number),
+            (shape, false) if shape.is_from_file() => {
+                let all = particles.position.iter().zip(&particles.body);
+                let own = all.filter(|(_, body)| **body as usize == number);
+                bodies::box_around(own.map(|(x, _)| x))
+            }
             (shape, true) if shape.is_from_file() => {
                 let message = match body.system {
                     Some(_) => "points from a file have no faces, which a solid in a fluid needs",
@@ -172,14 +176,6 @@ fn everywhere<const D: usize>(case: &Case, shape: &Shape<D>) -> (Vector<D>, Vect
         Vector::from_fn(|axis, _| ends(axis).map_or(low[axis] - margin, |[low, _]| low)),
         Vector::from_fn(|axis, _| ends(axis).map_or(high[axis] + margin, |[_, high]| high)),
     )
-}
-
-/// The corners of the box around the particles of a body.
-fn box_around<const D: usize>(particles: &Particles<D>, body: usize) -> (Vector<D>, Vector<D>) {
-    let ends = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
-    let own = particles.position.iter().zip(&particles.body);
-    own.filter(|(_, number)| **number as usize == body)
-        .fold(ends, |(least, most), (x, _)| (least.inf(x), most.sup(x)))
 }
 
 /// The velocities of surfaces that slide.

@@ -54,6 +54,15 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
         }
     }
 
+    /// Whether a run behind `row` failed, and a check of its outcome says that this is known.
+    pub(super) fn is_known_to_fail(&self, row: &CheckRow) -> bool {
+        let mut runs = row.runs.iter().filter_map(|name| self.find(name.as_deref()).ok());
+        runs.any(|run| {
+            run.run.ending().message.is_some()
+                && of_outcome(run).any(|(_, check)| check.unmet.is_some())
+        })
+    }
+
     /// The case with the overrides of a variant, whether it was run or not.
     fn case_of(&self, variant: Option<&str>) -> Option<&Case> {
         let (_, found) = self.list.iter().find(|(name, _)| name.as_deref() == variant)?;
@@ -349,10 +358,15 @@ fn is_as_announced<Run: RunResults>(run: &VariantRun<Run>) -> bool {
     if ending.message.is_none() {
         return false;
     }
-    let summary = ending.summary;
-    applicable(&run.case).any(|(_, check)| {
-        own_runs(&run.case, check).contains(&run.case.variant)
-            && check.expectation == Expectation::Outcome(summary.clone())
+    of_outcome(run).any(|(outcome, _)| *outcome == ending.summary)
+}
+
+/// What checks expect of the outcome of a run, with the checks.
+fn of_outcome<Run>(run: &VariantRun<Run>) -> impl Iterator<Item = (&String, &Check)> {
+    applicable(&run.case).filter_map(|(_, check)| match &check.expectation {
+        Expectation::Outcome(outcome) => Some((outcome, check))
+            .filter(|_| own_runs(&run.case, check).contains(&run.case.variant)),
+        _ => None,
     })
 }
 

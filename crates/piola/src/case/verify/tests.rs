@@ -313,6 +313,15 @@ fn a_failed_run_passes_no_check_unless_the_failure_is_expected() {
         let rows = rows_of(&format!("{number}{announced}"), Level::Case, fails);
         assert_eq!(rows[0].pass, pass, "{announced}");
     }
+    // What cannot be evaluated for a failure that is known is known as well, and nothing else is.
+    let known = "unmet = \"it breaks up\"\n";
+    let with = |outcome: String| {
+        let rows = rows_of(&format!("{number}{known}{outcome}"), Level::Case, fails);
+        rows[0].unmet.is_some()
+    };
+    assert!(with(outcome("base", "completed") + known));
+    assert!(!with(outcome("base", "completed")));
+    assert!(!with(outcome("broken", "completed") + known));
     // An interruption is no result, whatever is expected.
     let stops =
         |_: Option<&str>, _: &Case| Ok(Fake { outcome: Outcome::Interrupted, ..completed(1.0) });
