@@ -5,8 +5,8 @@
 //! of their [`Pairs`], in groups of eight.
 //!
 //! Eight lanes sum up side by side, neighbour k in lane k mod 8; the lanes are added up by halves. The
-//! order of sums is the same on every machine and for every number of threads. Registers hold half of
-//! the lanes: a block of neighbours is gone through twice.
+//! order of sums is the same on every machine and for every number of threads. Where there are more than a few sums,
+//! registers hold half of the lanes: a block of neighbours is gone through twice.
 
 use std::ops::Range;
 
@@ -196,6 +196,25 @@ pub struct Term<L, S> {
     pub among: Among,
 }
 
+impl<L: PairLaw, S: Source<L::Side>> Term<L, S> {
+    /// Adds what `me`, the particle in `slot`, gets from four neighbours of a block from the `first` on.
+    #[inline(always)]
+    fn add_four<P: Pairs<Pair = L::Pair>>(
+        &self,
+        (pairs, block): (&P, &P::Block),
+        slot: usize,
+        first: usize,
+        me: &Of<L::Side, Lanes4>,
+        sum: &mut Of<L::Sums, Lanes4>,
+    ) {
+        let (others, pair) = pairs.four(block, first);
+        self.law.add(me, &self.source.four(slot, &others), &pair, sum);
+    }
+}
+
+/// Sums of which registers hold all eight lanes.
+const SIDE_BY_SIDE: usize = 4;
+
 /// Lanes of all sums, the lower half and the upper one.
 type Halves<R> = [Of<R, Lanes4>; 2];
 
@@ -227,30 +246,36 @@ impl<P: Pairs, L: PairLaw<Pair = P::Pair>, S: Source<L::Side>> Sum<P> for Term<L
         pairs: &P,
         slot: usize,
         block: &mut P::Block,
-        mut sums: Halves<L::Sums>,
+        [mut lower, mut upper]: Halves<L::Sums>,
     ) -> Halves<L::Sums> {
         let mut row = pairs.row(slot, self.among);
         let mut count = pairs.next(&mut row, L::NEEDS, block);
         if count == 0 {
-            return sums;
+            return [lower, upper];
         }
         let own = self.source.own(slot);
         let me = L::Side::map([&own], &|[x]: [f64; 1]| Lanes4::from(x));
         while count > 0 {
-            for (half, kept) in sums.iter_mut().enumerate() {
-                let begin = half * WIDTH;
-                let mut sum = *kept;
-                // An upper half without a true neighbour adds nothing.
-                for first in (begin..count).step_by(LANES) {
-                    let (others, pair) = pairs.four(block, first);
-                    let other = self.source.four(slot, &others);
-                    self.law.add(&me, &other, &pair, &mut sum);
+            // An upper half without a true neighbour adds nothing.
+            if L::Sums::NUMBERS <= SIDE_BY_SIDE {
+                for first in (0..count).step_by(LANES) {
+                    self.add_four((pairs, block), slot, first, &me, &mut lower);
+                    if first + WIDTH < count {
+                        self.add_four((pairs, block), slot, first + WIDTH, &me, &mut upper);
+                    }
                 }
-                *kept = sum;
+            } else {
+                for (begin, kept) in [(0, &mut lower), (WIDTH, &mut upper)] {
+                    let mut sum = *kept;
+                    for first in (begin..count).step_by(LANES) {
+                        self.add_four((pairs, block), slot, first, &me, &mut sum);
+                    }
+                    *kept = sum;
+                }
             }
             count = pairs.next(&mut row, L::NEEDS, block);
         }
-        sums
+        [lower, upper]
     }
 
     #[inline(always)]
