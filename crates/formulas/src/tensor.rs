@@ -6,20 +6,28 @@ use std::f64::consts::FRAC_PI_3;
 
 use nalgebra::{ArrayStorage, SMatrix};
 
-use crate::{Number, Scalar};
+use crate::{Lanes as _, Lanes4, Number, Scalar};
 
 /// A matrix of these entries. In vector registers: what is not inlined is not compiled for the widest.
 #[inline(always)]
-pub(crate) fn of_entries<T: Number, const D: usize>(
+pub(crate) fn of_entries<T: Number, const R: usize, const C: usize>(
     entry: impl Fn(usize, usize) -> T,
-) -> SMatrix<T, D, D> {
-    let mut all = [[T::zero(); D]; D];
+) -> SMatrix<T, R, C> {
+    let mut all = [[T::zero(); R]; C];
     for (j, column) in all.iter_mut().enumerate() {
         for (i, own) in column.iter_mut().enumerate() {
             *own = entry(i, j);
         }
     }
     SMatrix::from_array_storage(ArrayStorage(all))
+}
+
+/// Up to four vectors or tensors, a lane each; the last of them fills up what is left.
+#[inline(always)]
+pub fn lanes<const R: usize, const C: usize>(all: &[SMatrix<f64, R, C>]) -> SMatrix<Lanes4, R, C> {
+    let at = |k: usize| &all[k.min(all.len() - 1)];
+    let (a, b, c, d) = (at(0), at(1), at(2), at(3));
+    of_entries(|i, j| Lanes4::load([a[(i, j)], b[(i, j)], c[(i, j)], d[(i, j)]]))
 }
 
 /// `a b`, summed up in the order of nalgebra.
