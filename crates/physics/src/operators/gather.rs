@@ -5,8 +5,8 @@
 //! of their [`Pairs`], in groups of eight.
 //!
 //! Eight lanes sum up side by side, neighbour k in lane k mod 8; the lanes are added up by halves. The
-//! order of sums is the same on every machine and for every number of threads. Where there are more than a few sums,
-//! registers hold half of the lanes: a block of neighbours is gone through twice.
+//! order of sums is the same on every machine and for every number of threads. Registers hold half of
+//! the lanes: a block of neighbours is gone through twice, but for few sums of what is streamed from memory.
 
 use std::ops::Range;
 
@@ -39,6 +39,8 @@ pub trait Pairs: Sync {
         Self: 'a;
     /// Scratch for some neighbours of one particle.
     type Block: Default;
+    /// Whether what is known of pairs comes from memory, in the order of neighbours, and not from the scratch.
+    const IS_STREAMED: bool = false;
 
     /// The neighbours of the particle in a slot.
     fn row(&self, slot: usize, among: Among) -> Self::Row<'_>;
@@ -212,7 +214,7 @@ impl<L: PairLaw, S: Source<L::Side>> Term<L, S> {
     }
 }
 
-/// Sums of which registers hold all eight lanes.
+/// Sums of which registers hold all eight lanes, so that what is streamed is read once and evenly.
 const SIDE_BY_SIDE: usize = 4;
 
 /// Lanes of all sums, the lower half and the upper one.
@@ -246,28 +248,28 @@ impl<P: Pairs, L: PairLaw<Pair = P::Pair>, S: Source<L::Side>> Sum<P> for Term<L
         pairs: &P,
         slot: usize,
         block: &mut P::Block,
-        [mut lower, mut upper]: Halves<L::Sums>,
+        mut sums: Halves<L::Sums>,
     ) -> Halves<L::Sums> {
         let mut row = pairs.row(slot, self.among);
         let mut count = pairs.next(&mut row, L::NEEDS, block);
         if count == 0 {
-            return [lower, upper];
+            return sums;
         }
         let own = self.source.own(slot);
         let me = L::Side::map([&own], &|[x]: [f64; 1]| Lanes4::from(x));
         while count > 0 {
             // An upper half without a true neighbour adds nothing.
-            if L::Sums::NUMBERS <= SIDE_BY_SIDE {
-                for first in (0..count).step_by(LANES) {
-                    self.add_four((pairs, block), slot, first, &me, &mut lower);
-                    if first + WIDTH < count {
-                        self.add_four((pairs, block), slot, first + WIDTH, &me, &mut upper);
-                    }
+            if P::IS_STREAMED && L::Sums::NUMBERS <= SIDE_BY_SIDE {
+                let [mut own, mut other] = sums;
+                for first in (0..count).step_by(WIDTH) {
+                    self.add_four((pairs, block), slot, first, &me, &mut own);
+                    (own, other) = (other, own);
                 }
+                sums = if count.div_ceil(WIDTH) % 2 == 0 { [own, other] } else { [other, own] };
             } else {
-                for (begin, kept) in [(0, &mut lower), (WIDTH, &mut upper)] {
+                for (half, kept) in sums.iter_mut().enumerate() {
                     let mut sum = *kept;
-                    for first in (begin..count).step_by(LANES) {
+                    for first in (half * WIDTH..count).step_by(LANES) {
                         self.add_four((pairs, block), slot, first, &me, &mut sum);
                     }
                     *kept = sum;
@@ -275,7 +277,7 @@ impl<P: Pairs, L: PairLaw<Pair = P::Pair>, S: Source<L::Side>> Sum<P> for Term<L
             }
             count = pairs.next(&mut row, L::NEEDS, block);
         }
-        [lower, upper]
+        sums
     }
 
     #[inline(always)]
