@@ -26,7 +26,10 @@ impl<const D: usize, const N: usize, T: Number> Seen<D, N, T> {
     /// and the mismatch.
     #[inline(always)]
     fn common(&self) -> [T; 4] {
-        let speed_squared = self.velocity.iter().fold(T::zero(), |sum, &own| sum + own * own);
+        let mut speed_squared = T::zero();
+        for &own in &self.velocity {
+            speed_squared += own * own;
+        }
         [speed_squared, self.wave_speed, -self.ratio, self.mismatch]
     }
 }
@@ -107,9 +110,12 @@ impl<const N: usize> Sight4<N> {
     ) {
         let particle = Lanes4::load([0.0, 1.0, 2.0, 3.0]) + Lanes4::from(self.first + first as f64);
         self.not_finite.see(!is_finite, Lanes4::from(1.0), particle);
-        let figures = seen.common().into_iter().chain(seen.figures);
-        let all = self.common.iter_mut().chain(&mut self.own);
-        all.zip(figures).for_each(|(most, value)| most.see(is_finite, value, particle));
+        for (most, value) in self.common.iter_mut().zip(seen.common()) {
+            most.see(is_finite, value, particle);
+        }
+        for (most, value) in self.own.iter_mut().zip(seen.figures) {
+            most.see(is_finite, value, particle);
+        }
     }
 
     fn of_all_lanes(&self) -> Sight<N> {

@@ -142,8 +142,10 @@ fn see_block<const D: usize>(block: &Block<'_, D>, sight: &mut Sight4<3>) {
         let own = first..(first + WIDTH).min(count);
         let columns = block.columns.map(|column| tensor::lanes(&column[own.clone()]));
         // Zero times a number is zero if that is finite.
-        let all = columns.iter().flatten();
-        let nothing = all.fold(zero, |sum, &number| sum + number * 0.0);
+        let mut nothing = zero;
+        for number in columns.iter().flatten() {
+            nothing += *number * 0.0;
+        }
         let gradient = tensor::lanes(&block.gradient[own.clone()]);
         let [least, most] = tensor::lanes(&moduli[own.clone()]).into();
         let [thickening] = tensor::lanes(&thickening[own]).into();
