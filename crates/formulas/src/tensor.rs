@@ -6,20 +6,28 @@ use std::f64::consts::FRAC_PI_3;
 
 use nalgebra::{ArrayStorage, SMatrix};
 
-use crate::{Number, Scalar};
+use crate::{Lanes as _, Lanes4, Number, Scalar};
 
 /// A matrix of these entries. In vector registers: what is not inlined is not compiled for the widest.
 #[inline(always)]
-pub(crate) fn of_entries<T: Number, const D: usize>(
+pub(crate) fn of_entries<T: Number, const R: usize, const C: usize>(
     entry: impl Fn(usize, usize) -> T,
-) -> SMatrix<T, D, D> {
-    let mut all = [[T::zero(); D]; D];
+) -> SMatrix<T, R, C> {
+    let mut all = [[T::zero(); R]; C];
     for (j, column) in all.iter_mut().enumerate() {
         for (i, own) in column.iter_mut().enumerate() {
             *own = entry(i, j);
         }
     }
     SMatrix::from_array_storage(ArrayStorage(all))
+}
+
+/// Up to four vectors or tensors, a lane each; the last of them fills up what is left.
+#[inline(always)]
+pub fn lanes<const R: usize, const C: usize>(all: &[SMatrix<f64, R, C>]) -> SMatrix<Lanes4, R, C> {
+    let at = |k: usize| &all[k.min(all.len() - 1)];
+    let (a, b, c, d) = (at(0), at(1), at(2), at(3));
+    of_entries(|i, j| Lanes4::load([a[(i, j)], b[(i, j)], c[(i, j)], d[(i, j)]]))
 }
 
 /// `a b`, summed up in the order of nalgebra.
@@ -132,12 +140,12 @@ pub fn extreme_eigenvalues<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> [
         return [a[(0, 0)]; 2];
     }
     let parts = Parts::of(a);
-    let (polar, is_safe) = (parts.polar(), parts.is_safe());
+    let polar = parts.polar();
     let least = parts.eigenvalue(polar, Extreme::Smallest);
     let most = parts.eigenvalue(polar, Extreme::Largest);
     [
-        T::choose(is_safe, || least, || of_scaled(a, Extreme::Smallest)),
-        T::choose(is_safe, || most, || of_scaled(a, Extreme::Largest)),
+        parts.or_with_care(a, || least, Extreme::Smallest),
+        parts.or_with_care(a, || most, Extreme::Largest),
     ]
 }
 
@@ -169,11 +177,7 @@ fn extreme_eigenvalue<T: Number, const D: usize>(a: &SMatrix<T, D, D>, extreme: 
         return a[(0, 0)];
     }
     let parts = Parts::of(a);
-    T::choose(
-        parts.is_safe(),
-        || parts.eigenvalue(parts.polar(), extreme),
-        || of_scaled(a, extreme),
-    )
+    parts.or_with_care(a, || parts.eigenvalue(parts.polar(), extreme), extreme)
 }
 
 /// The eigenvalue of a matrix whose deviator is too large or small to be squared, or zero. Scaling by
@@ -230,6 +234,22 @@ impl<T: Number, const D: usize> Parts<T, D> {
     #[inline(always)]
     fn is_safe(&self) -> T::Mask {
         T::from(1e-240).at_most(self.square) & self.square.at_most(T::from(1e240))
+    }
+
+    /// The eigenvalue of `a`, of which these are the parts: `ordinary` where the square is safe, and the mean where it is zero
+    /// beside a mean of ordinary size, as at rest.
+    #[inline(always)]
+    fn or_with_care(
+        &self,
+        a: &SMatrix<T, D, D>,
+        ordinary: impl FnOnce() -> T,
+        extreme: Extreme,
+    ) -> T {
+        let (is_safe, size) = (self.is_safe(), self.mean.abs());
+        let is_round = self.square.at_most(T::zero()) & size.above(1e-100) & size.below(1e100);
+        T::choose(is_safe, ordinary, || {
+            T::choose(is_safe | is_round, || self.mean, || of_scaled(a, extreme))
+        })
     }
 
     /// An eigenvalue where the square is not zero, of what [`Self::polar`] gives.

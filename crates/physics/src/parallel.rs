@@ -7,6 +7,7 @@
 mod sums;
 mod team;
 
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
@@ -178,11 +179,11 @@ pub fn add_sums<T: Sums>(
     add: impl Fn(usize, &mut T) + Sync,
     exact: &mut ExactSums,
 ) {
-    each_chunk(rows, add, |part| exact.add(part));
+    each_chunk(rows, |own, part| own.for_each(|i| add(i, part)), |part| exact.add(part));
 }
 
-/// Puts together what a row has over `0..count`, in their order: `add(i, all)` adds that of row i.
-pub fn reduce<T: Reduce>(count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
+/// Puts together what rows have over `0..count`, in their order: `add(rows, all)` adds that of some that follow each other.
+pub fn reduce<T: Reduce>(count: usize, add: impl Fn(Range<usize>, &mut T) + Sync) -> T {
     let mut all = T::ZERO;
     each_chunk([count, CHUNK], add, |part| all.add(part));
     all
@@ -194,17 +195,11 @@ const SIDE_BY_SIDE: usize = 64;
 /// Shows what the rows of each chunk have, in the order of chunks.
 fn each_chunk<T: Reduce>(
     [count, chunk]: [usize; 2],
-    add: impl Fn(usize, &mut T) + Sync,
+    add: impl Fn(Range<usize>, &mut T) + Sync,
     see: impl FnMut(&T),
 ) {
-    over_chunks(
-        [count, chunk],
-        Counted,
-        |first, Counted, part| {
-            (first..(first + chunk).min(count)).for_each(|i| add(i, part));
-        },
-        see,
-    );
+    let own = |first: usize| first..(first + chunk).min(count);
+    over_chunks([count, chunk], Counted, |first, Counted, part| add(own(first), part), see);
 }
 
 /// Calls `body(first, parts, own)` for chunks of the arrays of `count` particles, which changes them and adds to what the

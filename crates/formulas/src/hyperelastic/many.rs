@@ -4,7 +4,7 @@ use multiversion::multiversion;
 use nalgebra::SMatrix;
 
 use super::Reduced;
-use crate::{Lanes as _, Lanes4, WIDTH, tensor};
+use crate::{Lanes as _, WIDTH, tensor};
 
 impl<const D: usize> Reduced<D> {
     /// Adds a share of the [stress](Self::stress) of each displacement gradient, to the bit as one by one.
@@ -42,14 +42,6 @@ impl<const D: usize> Reduced<D> {
     }
 }
 
-/// Up to four tensors, a lane each; the last of them fills up what is left.
-#[inline(always)]
-fn lanes<const D: usize>(tensors: &[SMatrix<f64, D, D>]) -> SMatrix<Lanes4, D, D> {
-    let at = |k: usize| &tensors[k.min(tensors.len() - 1)];
-    let (a, b, c, d) = (at(0), at(1), at(2), at(3));
-    tensor::of_entries(|i, j| Lanes4::load([a[(i, j)], b[(i, j)], c[(i, j)], d[(i, j)]]))
-}
-
 #[multiversion(targets("x86_64+avx2"))]
 fn add_held_stresses<const D: usize>(
     law: &Reduced<D>,
@@ -58,7 +50,8 @@ fn add_held_stresses<const D: usize>(
     stresses: &mut [SMatrix<f64, D, D>],
 ) {
     for (gradients, sums) in gradients.chunks(WIDTH).zip(stresses.chunks_mut(WIDTH)) {
-        let stress = law.held_stress(&lanes(gradients)).map(|entry| (entry * share).store());
+        let stress =
+            law.held_stress(&tensor::lanes(gradients)).map(|entry| (entry * share).store());
         for (k, sum) in sums.iter_mut().enumerate() {
             *sum += stress.map(|entry| entry[k]);
         }
@@ -73,7 +66,9 @@ fn add_held_wave_moduli<const D: usize>(
     moduli: &mut [[f64; 2]],
 ) {
     for (gradients, sums) in gradients.chunks(WIDTH).zip(moduli.chunks_mut(WIDTH)) {
-        let own = law.held_wave_moduli(&lanes(gradients)).map(|modulus| (modulus * share).store());
+        let own = law
+            .held_wave_moduli(&tensor::lanes(gradients))
+            .map(|modulus| (modulus * share).store());
         for (k, [least, most]) in sums.iter_mut().enumerate() {
             *least += own[0][k];
             *most += own[1][k];

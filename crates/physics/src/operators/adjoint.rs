@@ -11,7 +11,7 @@ use piola_formulas::pairs::{Components, Each, One};
 use super::directed::DirectedSupport;
 use super::dual_gradient::{DualGradient, dual_row};
 use super::frozen::{FrozenRows, Row, RowSizes};
-use super::gather::{Among, OfOther, Term, gather, gather_parts, sum_at, visit};
+use super::gather::{Among, Term, gather, gather_parts, sum_at, visit};
 use crate::parallel::{Parts, Team};
 use crate::{Tensor, Vector};
 
@@ -138,7 +138,7 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
         force: &mut [Vector<D>],
     ) {
         let (tension, _) = tension.as_chunks::<N>();
-        let source = (OfOther(|b: usize| tension[b]), field);
+        let source = (tension, field);
         let sum = Term { law: Forces::<D, N>, source, among: Among::All };
         gather(&self.forces, &sum, force, Some, |a, taken, force| {
             *force = *taken;

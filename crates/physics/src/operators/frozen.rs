@@ -211,6 +211,7 @@ impl<R: Record> Pairs for FrozenRows<R> {
     type Pair = pairs::Frozen<R>;
     type Row<'a> = Row;
     type Block = Row;
+    const IS_STREAMED: bool = true;
 
     #[inline(always)]
     fn row(&self, a: usize, among: Among) -> Row {

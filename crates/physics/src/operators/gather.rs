@@ -6,7 +6,7 @@
 //!
 //! Eight lanes sum up side by side, neighbour k in lane k mod 8; the lanes are added up by halves. The
 //! order of sums is the same on every machine and for every number of threads. Registers hold half of
-//! the lanes: a block of neighbours is gone through twice.
+//! the lanes: a block of neighbours is gone through twice, but for few sums of what is streamed from memory.
 
 use std::ops::Range;
 
@@ -39,6 +39,8 @@ pub trait Pairs: Sync {
         Self: 'a;
     /// Scratch for some neighbours of one particle.
     type Block: Default;
+    /// Whether what is known of pairs comes from memory, in the order of neighbours, and not from the scratch.
+    const IS_STREAMED: bool = false;
 
     /// The neighbours of the particle in a slot.
     fn row(&self, slot: usize, among: Among) -> Self::Row<'_>;
@@ -196,6 +198,25 @@ pub struct Term<L, S> {
     pub among: Among,
 }
 
+impl<L: PairLaw, S: Source<L::Side>> Term<L, S> {
+    /// Adds what `me`, the particle in `slot`, gets from four neighbours of a block from the `first` on.
+    #[inline(always)]
+    fn add_four<P: Pairs<Pair = L::Pair>>(
+        &self,
+        (pairs, block): (&P, &P::Block),
+        slot: usize,
+        first: usize,
+        me: &Of<L::Side, Lanes4>,
+        sum: &mut Of<L::Sums, Lanes4>,
+    ) {
+        let (others, pair) = pairs.four(block, first);
+        self.law.add(me, &self.source.four(slot, &others), &pair, sum);
+    }
+}
+
+/// Sums of which registers hold all eight lanes, so that what is streamed is read once and evenly.
+const SIDE_BY_SIDE: usize = 4;
+
 /// Lanes of all sums, the lower half and the upper one.
 type Halves<R> = [Of<R, Lanes4>; 2];
 
@@ -237,16 +258,22 @@ impl<P: Pairs, L: PairLaw<Pair = P::Pair>, S: Source<L::Side>> Sum<P> for Term<L
         let own = self.source.own(slot);
         let me = L::Side::map([&own], &|[x]: [f64; 1]| Lanes4::from(x));
         while count > 0 {
-            for (half, kept) in sums.iter_mut().enumerate() {
-                let begin = half * WIDTH;
-                let mut sum = *kept;
-                // An upper half without a true neighbour adds nothing.
-                for first in (begin..count).step_by(LANES) {
-                    let (others, pair) = pairs.four(block, first);
-                    let other = self.source.four(slot, &others);
-                    self.law.add(&me, &other, &pair, &mut sum);
+            // An upper half without a true neighbour adds nothing.
+            if P::IS_STREAMED && L::Sums::NUMBERS <= SIDE_BY_SIDE {
+                let [mut own, mut other] = sums;
+                for first in (0..count).step_by(WIDTH) {
+                    self.add_four((pairs, block), slot, first, &me, &mut own);
+                    (own, other) = (other, own);
                 }
-                *kept = sum;
+                sums = if count.div_ceil(WIDTH) % 2 == 0 { [own, other] } else { [other, own] };
+            } else {
+                for (half, kept) in sums.iter_mut().enumerate() {
+                    let mut sum = *kept;
+                    for first in (half * WIDTH..count).step_by(LANES) {
+                        self.add_four((pairs, block), slot, first, &me, &mut sum);
+                    }
+                    *kept = sum;
+                }
             }
             count = pairs.next(&mut row, L::NEEDS, block);
         }

@@ -308,12 +308,12 @@ impl Team {
         exact.map(|sums| sums.total())
     }
 
-    /// What rows have together over the particles of all ranks, in their order. Numbers of `pack` tell the others what own
+    /// What rows have together over the particles of all ranks, in their order, as [`reduce`](super::reduce). Numbers of `pack` tell the others what own
     /// particles have, and `unpack` reads those.
     pub fn reduce<T: Reduce>(
         &self,
         count: usize,
-        add: impl Fn(usize, &mut T) + Sync,
+        add: impl Fn(Range<usize>, &mut T) + Sync,
         pack: impl Fn(&T) -> Vec<f64>,
         unpack: impl Fn(&[f64]) -> T,
     ) -> T {

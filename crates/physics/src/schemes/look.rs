@@ -1,20 +1,37 @@
 //! One look over a state: is it sound, how fast is it, and what is largest of that which bounds the step.
 
+use std::ops::Range;
+
+use nalgebra::SVector;
+use piola_formulas::{Lanes as _, Lanes4, Mask4, Number};
+
 use super::Health;
-use crate::Vector;
 use crate::parallel::{Reduce, Team};
 
-/// What one particle contributes.
-pub(crate) struct Seen<const D: usize, const N: usize> {
-    pub velocity: Vector<D>,
+/// What one particle contributes, or what four of them do, a lane each.
+pub(crate) struct Seen<const D: usize, const N: usize, T = f64> {
+    pub velocity: SVector<T, D>,
     /// Largest speed of a wave in m/s.
-    pub wave_speed: f64,
+    pub wave_speed: T,
     /// Smallest volume ratio.
-    pub ratio: f64,
+    pub ratio: T,
     /// Difference of an evolved volume ratio and the determinant.
-    pub mismatch: f64,
+    pub mismatch: T,
     /// Figures of the formulation, of which the largest count.
-    pub figures: [f64; N],
+    pub figures: [T; N],
+}
+
+impl<const D: usize, const N: usize, T: Number> Seen<D, N, T> {
+    /// What is common to all formulations, of which the largest count: squared speed, wave speed, the negative volume ratio
+    /// and the mismatch.
+    #[inline(always)]
+    fn common(&self) -> [T; 4] {
+        let mut speed_squared = T::zero();
+        for &own in &self.velocity {
+            speed_squared += own * own;
+        }
+        [speed_squared, self.wave_speed, -self.ratio, self.mismatch]
+    }
 }
 
 /// The largest of a figure over particles, and who has it.
@@ -43,8 +60,75 @@ impl Most {
     }
 }
 
-/// What has been seen of some particles: squared speed, wave speed, the negative volume ratio and the
-/// mismatch, and the figures of the formulation.
+/// The largest of a figure in each of four lanes, with the numbers of those who have it.
+#[derive(Clone, Copy)]
+struct Most4 {
+    value: Lanes4,
+    particle: Lanes4,
+}
+
+impl Most4 {
+    /// Sees others, of those that a mask has; what is not a number is not seen.
+    #[inline(always)]
+    fn see(&mut self, mask: Mask4, value: Lanes4, particle: Lanes4) {
+        let is_larger = mask & self.value.less(value);
+        self.value = Lanes4::select(is_larger, value, self.value);
+        self.particle = Lanes4::select(is_larger, particle, self.particle);
+    }
+
+    /// The largest of all lanes, and the first that has it.
+    fn of_all_lanes(self) -> Most {
+        let mut most = Most::NOTHING;
+        for (value, particle) in self.value.store().into_iter().zip(self.particle.store()) {
+            let particle = particle as usize;
+            if value > most.value || value == most.value && particle < most.particle {
+                most = Most { value, particle };
+            }
+        }
+        most
+    }
+}
+
+/// What has been seen of particles four at a time, a lane each.
+pub(crate) struct Sight4<const N: usize> {
+    /// The number of the first particle here among those of all ranks.
+    first: f64,
+    not_finite: Most4,
+    common: [Most4; 4],
+    own: [Most4; N],
+}
+
+impl<const N: usize> Sight4<N> {
+    /// Sees four particles from the one at index `first` on, of which those that are not finite take no part. Lanes beyond the
+    /// last particle have what it has.
+    #[inline(always)]
+    pub fn see<const D: usize>(
+        &mut self,
+        first: usize,
+        is_finite: Mask4,
+        seen: &Seen<D, N, Lanes4>,
+    ) {
+        let particle = Lanes4::load([0.0, 1.0, 2.0, 3.0]) + Lanes4::from(self.first + first as f64);
+        self.not_finite.see(!is_finite, Lanes4::from(1.0), particle);
+        for (most, value) in self.common.iter_mut().zip(seen.common()) {
+            most.see(is_finite, value, particle);
+        }
+        for (most, value) in self.own.iter_mut().zip(seen.figures) {
+            most.see(is_finite, value, particle);
+        }
+    }
+
+    fn of_all_lanes(&self) -> Sight<N> {
+        let not_finite = self.not_finite.of_all_lanes();
+        Sight {
+            first_not_finite: (not_finite.value > 0.0).then_some(not_finite.particle),
+            common: self.common.map(Most4::of_all_lanes),
+            own: self.own.map(Most4::of_all_lanes),
+        }
+    }
+}
+
+/// What has been seen of some particles: what is [common](Seen::common), and the figures of the formulation.
 #[derive(Clone, Copy)]
 struct Sight<const N: usize> {
     first_not_finite: Option<usize>,
@@ -102,10 +186,34 @@ pub(crate) fn look<const D: usize, const N: usize>(
             sight.first_not_finite.get_or_insert(particle);
             return;
         };
-        let common = [seen.velocity.norm_squared(), seen.wave_speed, -seen.ratio, seen.mismatch];
-        sight.common.iter_mut().zip(common).for_each(|(most, value)| most.see(value, particle));
-        sight.own.iter_mut().zip(seen.figures).for_each(|(most, value)| most.see(value, particle));
+        sight.common.iter_mut().zip(seen.common()).for_each(|(it, value)| it.see(value, particle));
+        sight.own.iter_mut().zip(seen.figures).for_each(|(it, value)| it.see(value, particle));
     };
+    look_over(team, count, least, |own, sight| own.for_each(|a| see(a, sight)))
+}
+
+/// The same of particles that are seen four at a time: `see` shows those of a chunk.
+pub(crate) fn look_at_fours<const N: usize>(
+    team: &Team,
+    count: usize,
+    least: [f64; N],
+    see: impl Fn(Range<usize>, &mut Sight4<N>) + Sync,
+) -> (Health, [Most; N]) {
+    let nothing = Most4 { value: Lanes4::from(f64::NEG_INFINITY), particle: Lanes4::from(0.0) };
+    let (first, not_finite) = (team.first() as f64, nothing);
+    look_over(team, count, least, |own, sight| {
+        let mut fours = Sight4 { first, not_finite, common: [nothing; 4], own: [nothing; N] };
+        see(own, &mut fours);
+        *sight = fours.of_all_lanes();
+    })
+}
+
+fn look_over<const N: usize>(
+    team: &Team,
+    count: usize,
+    least: [f64; N],
+    see: impl Fn(Range<usize>, &mut Sight<N>) + Sync,
+) -> (Health, [Most; N]) {
     let sight = team.reduce(count, see, Sight::pack, Sight::unpack);
     judged(sight.first_not_finite, sight.common, sight.own, least)
 }
@@ -135,32 +243,51 @@ pub(crate) fn judged<const N: usize>(
 
 #[cfg(test)]
 mod tests {
+    use piola_formulas::WIDTH;
+
     use super::*;
 
-    /// What is seen of 3000 particles, more than a chunk: a speed and a figure of each.
+    /// Of so many particles, more than a chunk and no multiple of four.
+    const COUNT: usize = 3002;
+
+    /// What a particle or four of them show: a speed and a figure.
+    fn shown<T: Number>(value: T) -> Seen<2, 1, T> {
+        let (one, zero) = (T::from(1.0), T::from(0.0));
+        let velocity = SVector::from([value, zero]);
+        Seen { velocity, wave_speed: one, ratio: value, mismatch: zero, figures: [value] }
+    }
+
+    /// What is seen of all, one by one and four at a time.
     fn seen(speed: impl Fn(usize) -> f64 + Sync, least: f64) -> (Health, Most) {
-        let (health, [most]) = look(&Team::default(), 3000, [least], |a| {
+        let team = Team::default();
+        let (health, [most]) = look(&team, COUNT, [least], |a| {
             let value = speed(a);
-            let velocity = Vector::from([value, 0.0]);
-            let seen =
-                Seen { velocity, wave_speed: 1.0, ratio: value, mismatch: 0.0, figures: [value] };
-            (value != f64::INFINITY).then_some(seen)
+            (value != f64::INFINITY).then(|| shown(value))
         });
+        let in_fours = look_at_fours(&team, COUNT, [least], |own, sight| {
+            for first in own.clone().step_by(WIDTH) {
+                let value = |lane: usize| speed((first + lane).min(own.end - 1));
+                let values = Lanes4::load(std::array::from_fn(value));
+                let is_finite = !Lanes4::from(f64::INFINITY).at_most(values);
+                sight.see(first, is_finite, &shown(values));
+            }
+        });
+        assert_eq!(in_fours, (health, [most]));
         (health, most)
     }
 
     #[test]
     fn the_first_particle_of_the_worst_is_named() {
-        // 7 at 1500, 2500 and 2900, and 1 elsewhere but for 0.5 at 40 and 2000.
+        // 7 at 1503, 1504 and 2900, and 1 elsewhere but for 0.5 at 42, 44 and 3001.
         let speed = |a: usize| match a {
-            1500 | 2500 | 2900 => 7.0,
-            40 | 2000 => 0.5,
+            1503 | 1504 | 2900 => 7.0,
+            42 | 44 | 3001 => 0.5,
             _ => 1.0,
         };
         let (health, most) = seen(speed, 0.0);
-        assert_eq!((health.largest_speed, health.largest_speed_particle), (7.0, 1500));
-        assert_eq!((health.smallest_ratio, health.smallest_ratio_particle), (0.5, 40));
-        assert_eq!(most, Most { value: 7.0, particle: 1500 });
+        assert_eq!((health.largest_speed, health.largest_speed_particle), (7.0, 1503));
+        assert_eq!((health.smallest_ratio, health.smallest_ratio_particle), (0.5, 42));
+        assert_eq!(most, Most { value: 7.0, particle: 1503 });
         // Nobody has what all of them have to exceed.
         assert_eq!(seen(speed, 8.0).1, Most { value: 8.0, particle: 0 });
         assert_eq!(health.first_not_finite, None);
@@ -169,12 +296,12 @@ mod tests {
     #[test]
     fn what_is_not_finite_is_named_and_takes_no_part() {
         let speed = |a: usize| match a {
-            1700 | 2800 => f64::INFINITY,
+            1703 | 1704 | 3001 => f64::INFINITY,
             2 => f64::NAN,
             _ => 3.0,
         };
         let (health, most) = seen(speed, 0.0);
-        assert_eq!(health.first_not_finite, Some(1700));
+        assert_eq!(health.first_not_finite, Some(1703));
         assert_eq!((health.largest_speed, health.smallest_ratio), (3.0, 3.0));
         assert_eq!(most, Most { value: 3.0, particle: 0 });
         // Of nothing there is nothing to say.

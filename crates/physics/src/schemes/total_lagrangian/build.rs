@@ -207,7 +207,6 @@ impl<const D: usize> TotalLagrangian<D> {
             strained: matrices.strained(count),
             gradient_rate: vec![Tensor::zeros(); rate_length],
             stress: vec![Tensor::zeros(); if is_strong { count } else { 0 }],
-            moduli: vec![[0.0; 2]; if solid.is_linear() { 0 } else { count }],
             force: vec![Vector::zeros(); with_images],
             rate: vec![0.0; length],
             reaction: Vec::new(),

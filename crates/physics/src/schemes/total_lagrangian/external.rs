@@ -23,7 +23,7 @@ impl<const D: usize> TotalLagrangian<D> {
         !self.loads.body_forces.is_empty()
     }
 
-    /// Writes the rates of the loaded state, whose forces have been evaluated.
+    /// Writes the accelerations of the loaded state, whose forces have been evaluated, where rates have those of velocities.
     pub(super) fn external_pass(&self, time: f64, at: &Columns<'_, D>, (rate, totals): Found<'_>) {
         let (solid, damping) = (&*self.solid, self.dissipation.damping);
         let count = solid.len();
@@ -35,8 +35,6 @@ impl<const D: usize> TotalLagrangian<D> {
                     - velocity[a] * damping;
             }
         });
-        parallel::copy(own.displacement, at.velocity);
-        parallel::for_each_chunk(own.kick, |_, kick| kick.fill(Vector::zeros()));
         let particle = |a: usize| Acted {
             mass: solid.mass[a],
             position: self.position(a, at),

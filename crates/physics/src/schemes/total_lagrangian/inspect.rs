@@ -1,13 +1,18 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
-use piola_formulas::tensor;
+use std::ops::Range;
 
-use super::TotalLagrangian;
+use bytemuck::cast_slice;
+use multiversion::multiversion;
+use nalgebra::SMatrix;
+use piola_formulas::{Lanes4, Number as _, WIDTH, tensor};
+
 use super::fields::Columns;
+use super::{Mixture, TotalLagrangian};
 use crate::coordinates;
-use crate::schemes::look::{Most, Seen, look};
+use crate::schemes::look::{Most, Seen, Sight4, look_at_fours};
 use crate::schemes::{Health, Particle, StepLimit};
-use crate::{Tensor, Vector, parallel};
+use crate::{Tensor, Vector};
 
 impl<const D: usize> TotalLagrangian<D> {
     /// The health of `state` and the bound on the step, theory (50) and (67), of the body as it is
@@ -24,10 +29,6 @@ impl<const D: usize> TotalLagrangian<D> {
         if !is_known {
             self.matrices.gradients(&self.displacement, &mut self.strained.gradient);
         }
-        let (solid, gradient) = (&self.solid, &self.strained.gradient);
-        parallel::for_each_chunk(&mut self.moduli, |first, moduli| {
-            solid.wave_moduli(first, &gradient[first..][..moduli.len()], moduli);
-        });
         let (health, [stiffening, thickening], soft) = self.look_at_solid(&at);
         if let Some(a) = soft.and_then(|number| self.team.own(number, self.solid.len())) {
             self.not_convex = Some((a, self.strained.gradient[a]));
@@ -54,36 +55,46 @@ impl<const D: usize> TotalLagrangian<D> {
     /// The health of the loaded state; the largest modulus of a wave over that at rest, and the largest
     /// thickening; and the particle whose material has lost its convexity most, if there is one.
     fn look_at_solid(&self, at: &Columns<'_, D>) -> (Health, [Most; 2], Option<usize>) {
-        let (solid, columns) = (&*self.solid, [at.velocity, at.displacement, at.kick]);
-        let velocity = self.velocity(at);
         let least = [0.0, 0.0, f64::NEG_INFINITY];
-        let team = &self.team;
-        let (health, [stiffening, thickening, softening]) = look(team, solid.len(), least, |a| {
-            let is_finite = |column: &&[Vector<D>]| column[a].iter().all(|value| value.is_finite());
-            columns.iter().all(is_finite).then(|| {
-                let gradient = &self.strained.gradient[a];
-                let mixture = solid.mixture(a);
-                let at_rest = solid.moduli_at_rest(a);
-                let moduli = self.moduli.get(a).copied().unwrap_or(at_rest);
-                let thickening = self.thickening_at(a, gradient, velocity);
-                Seen {
-                    velocity: at.velocity[a],
-                    wave_speed: (moduli[1].max(0.0) / mixture.density()).sqrt(),
-                    ratio: tensor::determinant(&(gradient + Tensor::identity())),
-                    mismatch: 0.0,
-                    figures: [moduli[1] / at_rest[1], thickening, -moduli[0] / at_rest[0]],
+        let see = |own: Range<usize>, sight: &mut Sight4<3>| {
+            for (mixture, run) in self.solid.runs(own) {
+                for first in run.clone().step_by(BLOCK) {
+                    let own = first..(first + BLOCK).min(run.end);
+                    see_block(&self.block(mixture, own, at), sight);
                 }
-            })
-        });
+            }
+        };
+        let (health, [stiffening, thickening, softening]) =
+            look_at_fours(&self.team, self.solid.len(), least, see);
         let soft = (softening.value > 0.0).then_some(softening.particle);
         (health, [stiffening, thickening], soft)
     }
 
+    /// What there is to see of some particles of a mixture.
+    fn block<'a>(
+        &'a self,
+        mixture: &Mixture<D>,
+        own: Range<usize>,
+        at: &Columns<'a, D>,
+    ) -> Block<'a, D> {
+        let columns = [at.velocity, at.displacement, at.kick].map(|column| &column[own.clone()]);
+        let gradient = &self.strained.gradient[own.clone()];
+        let (density, at_rest) = (mixture.density(), self.solid.moduli_at_rest(own.start));
+        let (mut moduli, mut thickening) = ([at_rest; BLOCK], [0.0; BLOCK]);
+        if !mixture.is_linear() {
+            mixture.all_wave_moduli(gradient, &mut moduli[..gradient.len()]);
+        }
+        if self.dissipation.is_viscous() {
+            let velocity = self.velocity(at);
+            for ((a, gradient), thickening) in own.clone().zip(gradient).zip(&mut thickening) {
+                *thickening = self.thickening_at(a, gradient, velocity);
+            }
+        }
+        Block { first: own.start, columns, gradient, density, at_rest, moduli, thickening }
+    }
+
     /// By how much viscosity has grown at a particle since rest.
     fn thickening_at(&self, a: usize, gradient: &Tensor<D>, velocity: &[Vector<D>]) -> f64 {
-        if !self.dissipation.is_viscous() {
-            return 0.0;
-        }
         let is_quadratic = self.dissipation.artificial_viscosity[1] > 0.0;
         let rate = is_quadratic.then(|| self.matrices.gradient_at(velocity, a));
         self.dissipation.thickening(&self.solid, a, gradient, rate.as_ref())
@@ -94,8 +105,58 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(super) fn is_evaluated_at(&self, at: &Columns<'_, D>) -> bool {
         let is_known = self.is_evaluated
             && self.updated.is_none()
-            && self.displacement[..self.solid.len()] == *at.displacement;
+            && cast_slice::<_, f64>(&self.displacement[..self.solid.len()])
+                == cast_slice(at.displacement);
         self.team.all(is_known)
+    }
+}
+
+/// Most particles that are looked at together.
+const BLOCK: usize = 64;
+
+/// Particles of one mixture that follow each other.
+struct Block<'a, const D: usize> {
+    /// The first of them.
+    first: usize,
+    /// Velocities, displacements and accelerations.
+    columns: [&'a [Vector<D>]; 3],
+    gradient: &'a [Tensor<D>],
+    /// Of the mixture, kg/m^3.
+    density: f64,
+    /// Smallest and largest modulus of a wave at rest, Pa.
+    at_rest: [f64; 2],
+    /// The same of each particle as it is.
+    moduli: [[f64; 2]; BLOCK],
+    /// By how much viscosity has grown at each since rest.
+    thickening: [f64; BLOCK],
+}
+
+/// Sees particles four at a time: how much their stiffness and viscosity have grown, and how far they have softened.
+#[multiversion(targets("x86_64+avx2"))]
+fn see_block<const D: usize>(block: &Block<'_, D>, sight: &mut Sight4<3>) {
+    let moduli: &[Vector<2>] = cast_slice(&block.moduli);
+    let thickening: &[Vector<1>] = cast_slice(&block.thickening);
+    let [least_at_rest, most_at_rest] = block.at_rest.map(Lanes4::from);
+    let (zero, count) = (Lanes4::from(0.0), block.gradient.len());
+    for first in (0..count).step_by(WIDTH) {
+        let own = first..(first + WIDTH).min(count);
+        let columns = block.columns.map(|column| tensor::lanes(&column[own.clone()]));
+        // Zero times a number is zero if that is finite.
+        let mut nothing = zero;
+        for number in columns.iter().flatten() {
+            nothing += *number * 0.0;
+        }
+        let gradient = tensor::lanes(&block.gradient[own.clone()]);
+        let [least, most] = tensor::lanes(&moduli[own.clone()]).into();
+        let [thickening] = tensor::lanes(&thickening[own]).into();
+        let seen = Seen {
+            velocity: columns[0],
+            wave_speed: (Lanes4::select(most.above(0.0), most, zero) / block.density).sqrt(),
+            ratio: tensor::determinant(&(gradient + SMatrix::identity())),
+            mismatch: zero,
+            figures: [most / most_at_rest, thickening, -least / least_at_rest],
+        };
+        sight.see(block.first + first, nothing.at_most(zero), &seen);
     }
 }
 

@@ -124,8 +124,6 @@ pub struct TotalLagrangian<const D: usize> {
     gradient_rate: Vec<Tensor<D>>,
     /// Elastic first Piola-Kirchhoff stress of the strong form, which its edges know better.
     stress: Vec<Tensor<D>>,
-    /// Smallest and largest modulus of a wave in Pa at the last look; empty where they are those at rest.
-    moduli: Vec<[f64; 2]>,
     /// Internal forces, those on images behind.
     force: Vec<Vector<D>>,
     /// Scratch of the length of a state.

@@ -7,6 +7,7 @@ use piola_device::{Device, Language};
 use super::fields::{ColumnsMut, Made};
 use super::inspect::convexity_is_lost;
 use super::{ENERGIES, LEDGER, LOAD_FACTOR, Matrices, TotalLagrangian};
+use crate::Vector;
 use crate::fields::FieldDescription;
 use crate::parallel::{self, Team};
 use crate::schemes::momentum::of_particles;
@@ -59,7 +60,10 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     #[inline(never)]
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         let totals = self.evaluate(time, state, rate);
-        LEDGER.write(D, &totals, ColumnsMut::<D>::of(rate, self.solid.len()).1);
+        let (own, tail) = ColumnsMut::<D>::of(rate, self.solid.len());
+        parallel::copy(own.displacement, self.columns(state).velocity);
+        parallel::for_each_chunk(own.kick, |_, kick| kick.fill(Vector::zeros()));
+        LEDGER.write(D, &totals, tail);
     }
 
     #[inline(never)]
@@ -301,7 +305,6 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
             + vectors.into_iter().map(|it| size_of_val(it.as_slice())).sum::<usize>()
             + size_of_val(self.gradient_rate.as_slice())
             + size_of_val(self.stress.as_slice())
-            + size_of_val(self.moduli.as_slice())
             + 2 * size_of_val(self.rate.as_slice())
     }
 }

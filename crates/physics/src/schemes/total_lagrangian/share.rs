@@ -120,7 +120,6 @@ impl<const D: usize> TotalLagrangian<D> {
             strained: matrices.strained(count),
             gradient_rate: vec![Tensor::zeros(); if is_viscous { count } else { 0 }],
             stress: Vec::new(),
-            moduli: vec![[0.0; 2]; if solid.is_linear() { 0 } else { count }],
             force: vec![Vector::zeros(); slots.owned()],
             rate: vec![0.0; length],
             reaction: Vec::new(),

@@ -86,14 +86,13 @@ impl<const D: usize> Solid<D> {
         &self.mixtures[self.mixture[a] as usize]
     }
 
-    /// Particles that follow each other from `first` on and are made of one mixture: it, and which of the `count` they are.
-    fn runs(
+    /// Those of some particles that follow each other and are made of one mixture, with it.
+    pub(super) fn runs(
         &self,
-        first: usize,
-        count: usize,
+        own: Range<usize>,
     ) -> impl Iterator<Item = (&Mixture<D>, Range<usize>)> {
-        let runs = self.mixture[first..first + count].chunk_by(|one, other| one == other);
-        runs.scan(0, |end, run| {
+        let runs = self.mixture[own.clone()].chunk_by(|one, other| one == other);
+        runs.scan(own.start, |end, run| {
             let begin = std::mem::replace(end, *end + run.len());
             Some((&self.mixtures[run[0] as usize], begin..*end))
         })
@@ -101,19 +100,9 @@ impl<const D: usize> Solid<D> {
 
     /// Writes the stresses in Pa of particles from `first` on at their displacement gradients.
     pub fn stresses(&self, first: usize, gradients: &[Tensor<D>], stresses: &mut [Tensor<D>]) {
-        for (mixture, own) in self.runs(first, gradients.len()) {
+        for (mixture, own) in self.runs(first..first + gradients.len()) {
+            let own = own.start - first..own.end - first;
             mixture.stresses(&gradients[own.clone()], &mut stresses[own]);
-        }
-    }
-
-    /// Writes the smallest and the largest modulus of a wave in Pa at particles from `first` on at their displacement
-    /// gradients.
-    pub fn wave_moduli(&self, first: usize, gradients: &[Tensor<D>], moduli: &mut [[f64; 2]]) {
-        for (mixture, own) in self.runs(first, gradients.len()) {
-            match mixture.is_linear() {
-                true => moduli[own.clone()].fill(self.moduli_at_rest(first + own.start)),
-                false => mixture.all_wave_moduli(&gradients[own.clone()], &mut moduli[own]),
-            }
         }
     }
 

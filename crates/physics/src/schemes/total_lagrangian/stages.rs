@@ -2,7 +2,6 @@
 
 use super::fields::{Columns, Made};
 use super::{Matrices, TotalLagrangian};
-use crate::fields::width;
 use crate::operators::ReferenceGradient;
 use crate::schemes::Array;
 use crate::schemes::ledger::{Found, Totals};
@@ -135,7 +134,7 @@ fn arrays<const D: usize>(matrices: &Matrices<D>, count: usize, is_viscous: bool
         Array::of::<Tensor<D>>("stress"),
         Array::with("tension", tensions * tensor),
         Array::of::<Vector<D>>("force"),
-        Array::with("rate", width(Made::FIELDS, D) * size_of::<f64>()),
+        Array::of::<Vector<D>>("rate"),
         Array::with("ledger", 0),
         Array::of::<f64>("mass"),
         Array::of::<f64>("volume"),
@@ -149,7 +148,7 @@ fn arrays<const D: usize>(matrices: &Matrices<D>, count: usize, is_viscous: bool
 }
 
 impl<const D: usize> TotalLagrangian<D> {
-    /// Writes the rates of the columns of `state` at `time`.
+    /// Writes the rates of the velocities of `state` at `time`.
     pub(super) fn evaluate(&mut self, time: f64, state: &[f64], rate: &mut [f64]) -> Totals {
         let at = self.columns(state);
         let mut stages = std::mem::take(&mut self.stages);
