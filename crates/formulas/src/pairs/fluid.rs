@@ -335,8 +335,6 @@ record! {
     pub struct RateSums<D> in RateSum {
         /// `div u` in 1/s, or `div uhat`.
         pub divergence: One,
-        /// `d . grad rho` in kg/(m^3 s).
-        pub density_transport: One,
         /// `d . grad p` in Pa/s.
         pub pressure_transport: One,
         /// Diffusion of the pressure in Pa/s.
@@ -372,9 +370,7 @@ impl<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool>
         sums.divergence -= dot(&flow, &pair.separation) * slope;
         let jump = other.pressure - me.pressure;
         if CORRECTS {
-            let carried = dot(&other.deviation, &pair.separation) * slope;
-            sums.density_transport += carried * (other.density - me.density);
-            sums.pressure_transport += carried * jump;
+            sums.pressure_transport += dot(&other.deviation, &pair.separation) * slope * jump;
         }
         let densities = me.density + other.density;
         let scale = fluid::exchange_scale(densities, pair.square, self.0.softening);

@@ -216,10 +216,6 @@ fn in_dimension<const D: usize>() {
         let expected = divergence(velocity, x) + divergence(deviation, x);
         (number(rates.divergence), number(expected))
     });
-    second_order::<D, 1>("d . grad rho", full, |x, rates, _| {
-        let expected = vector(deviation, x).dot(&DENSITY.gradient(x));
-        (number(rates.density_transport), number(expected))
-    });
     second_order::<D, 1>("d . grad p", full, |x, rates, _| {
         let expected = vector(deviation, x).dot(&PRESSURE.gradient(x));
         (number(rates.pressure_transport), number(expected))

@@ -182,7 +182,7 @@ fn second_order<const D: usize>(solid: Solid, corrected: bool) {
     };
     let divergence =
         |f: &Found<D>| vec![(f.rates.divergence, (0..D).map(|i| velocity(i).slope(&f.x, i)).sum())];
-    let density = |f: &Found<D>| vec![(f.rates.density_transport, carried(f, DENSITY))];
+    let density = |f: &Found<D>| vec![(f.solid.density_transport, carried(f, DENSITY))];
     let pressure = |f: &Found<D>| vec![(f.rates.pressure_transport, carried(f, PRESSURE))];
     let checks: [(&str, Pairs<'_, D>); 6] = [
         ("grad u", &gradient),

@@ -3,14 +3,12 @@
 use super::ledger::ACCELERATIONS;
 use crate::Vector;
 
-/// Rates of change of a particle's density and pressure, term by term, see
+/// Rates of change of a particle's pressure, term by term, with those of its density, see
 /// [`super`](crate::schemes::transport_velocity).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rates<T = f64> {
     /// `div u` in 1/s, or `div uhat`, as the corrections say.
     pub divergence: T,
-    /// `d . grad rho` in kg/(m^3 s).
-    pub density_transport: T,
     /// `d . grad p` in Pa/s.
     pub pressure_transport: T,
     /// Diffusion of the pressure in Pa/s.

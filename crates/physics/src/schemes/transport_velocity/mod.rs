@@ -21,7 +21,8 @@
 //! E exchanges what pressures are beyond those of a fluid at rest,
 //! `p_b - p_a - (rho_a + rho_b)/2 g . (r_b - r_a)` for the paper's `p_b - p_a`. Inside a fluid that is the
 //! same; at a free surface, which has neighbours below only, the pressure of depth would diffuse out
-//! without end. The density takes `E_a / c^2`, which ties it to the pressure.
+//! without end. The density takes `E_a / c^2`, so that the first two lines are one but for `c^2`: the second is
+//! integrated, and the law of state gives the density.
 //!
 //! There are two systems: a fluid, [`WeaklyCompressible`], and elastic and elastic-plastic bodies,
 //! [`Hypoelastic`]. What is said of the fluid of neighbours, walls, surfaces, shifting and time holds for both.

@@ -3,10 +3,10 @@
 use piola_formulas::fluid;
 pub use piola_formulas::pairs::fluid::Viscous;
 
-/// How the density is found, theory (20) and (26).
+/// How the density of a fluid is found, theory (20) and (26).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DensityRule {
-    /// By integration of the continuity equation, CTVF (25) corrected.
+    /// By the continuity equation, CTVF (25) corrected: integrated, or from a pressure that is.
     Continuity,
     /// As the sum of the kernel over all masses.
     Summation,
@@ -53,10 +53,8 @@ pub enum Dilatation {
 pub struct Corrections {
     /// The velocity in the divergences; with their corrections it must be that of momentum.
     pub divergence: Divergence,
-    /// `(uhat - u) . grad rho` in the continuity equation.
-    pub density: bool,
-    /// `(uhat - u) . grad p` in the pressure equation.
-    pub pressure: bool,
+    /// `(uhat - u) . grad` of what is integrated: of the pressure, and of the density of solids.
+    pub transport: bool,
     /// The divergence of `A = rho u (x) (uhat - u)` in the momentum equation.
     pub stress: bool,
     /// The other term of the momentum equation.
@@ -67,8 +65,7 @@ impl Corrections {
     /// All terms as derived from CTVF (12), (19) and (23).
     pub const FULL: Self = Self {
         divergence: Divergence::Momentum,
-        density: true,
-        pressure: true,
+        transport: true,
         stress: true,
         dilatation: Dilatation::Deviation,
     };
@@ -77,8 +74,7 @@ impl Corrections {
     /// No term, u in the divergences.
     pub const NONE: Self = Self {
         divergence: Divergence::Momentum,
-        density: false,
-        pressure: false,
+        transport: false,
         stress: false,
         dilatation: Dilatation::None,
     };

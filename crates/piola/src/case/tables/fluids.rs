@@ -174,7 +174,11 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
 };
 
 const DENSITIES: Choices = choices(&[
-    choice("continuity", "by integration of the continuity equation, CTVF (25) corrected"),
+    choice(
+        "continuity",
+        "by the continuity equation, CTVF (25) corrected; with `edac` from the \
+         pressure by CTVF (8), which satisfies it",
+    ),
     choice("summation", "as the sum over masses"),
 ]);
 const PRESSURES: Choices = choices(&[

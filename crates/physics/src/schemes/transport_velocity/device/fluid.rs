@@ -4,7 +4,6 @@ use piola_device::{
     Among, DeviceError, Dialect, Gather, Machine, Order, Pass, Space, Traced, local, own, spread,
     through,
 };
-use piola_formulas::Number;
 use piola_formulas::pairs::fluid::{
     FULL, ForceConstants, ForceSum, Forces, MIXED, NONE, RateConstants, RateSum, Rates, Side, Wall,
     WallForces,
@@ -12,6 +11,7 @@ use piola_formulas::pairs::fluid::{
 use piola_formulas::pairs::sums::Density;
 use piola_formulas::pairs::wall::{Extrapolation, Surroundings};
 use piola_formulas::pairs::{Components, One};
+use piola_formulas::{Number, fluid};
 
 use super::super::fluid::Ends;
 use super::super::inspect::step_limits;
@@ -33,8 +33,6 @@ pub(in super::super) struct FluidPlan<const D: usize> {
     fluid: Fluid,
     /// Whether densities evolve.
     evolves: bool,
-    /// Whether the deviation carries density and pressure.
-    carries: [bool; 2],
     rate_constants: RateConstants,
     rate_kind: (bool, bool, bool),
     force_constants: ForceConstants,
@@ -61,7 +59,6 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
         if matter.is_damped() {
             return refuse("damping", "run it on the processor");
         }
-        let corrections = common.settings.corrections;
         let evolves = common.settings.density == DensityRule::Continuity;
         let (rate_constants, rate_kind) = matter.rate_law(common);
         let (force_constants, force_kind) = matter.force_law(common);
@@ -69,7 +66,6 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
             plan: system.device_plan()?,
             fluid: *matter.fluid(),
             evolves,
-            carries: [corrections.density && evolves, corrections.pressure],
             rate_constants,
             rate_kind,
             force_constants,
@@ -85,7 +81,7 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
     fn room(&self, system: &TransportVelocity<D>) -> Room {
         let count = system.common.particles.len();
         // What falls is read by the pass of rates.
-        let mut scratch = vec![("rate", 4 * count), ("half_force", D * count)];
+        let mut scratch = vec![("rate", 3 * count), ("half_force", D * count)];
         scratch.extend(self.plan.sums_densities.then_some(("summed", count)));
         scratch.extend((self.plan.normals > 0).then_some(("shear", D * count)));
         Room { scratch, filled: Vec::new() }
@@ -218,14 +214,8 @@ impl<const D: usize> FluidPlan<D> {
             (false, false, true) => of!(false, false, true),
             (false, false, false) => of!(false, false, false),
         };
-        let kept = |is_on: bool, sum| if is_on { sum } else { Traced::from(0.0) };
-        gather.close(&[], &[], &[own("rate", 4)], |sums, _| {
-            vec![
-                sums.divergence,
-                kept(self.carries[0], sums.density_transport),
-                kept(self.carries[1], sums.pressure_transport),
-                sums.pressure_diffusion,
-            ]
+        gather.close(&[], &[], &[own("rate", 3)], |sums, _| {
+            vec![sums.divergence, sums.pressure_transport, sums.pressure_diffusion]
         })
     }
 
@@ -239,7 +229,7 @@ impl<const D: usize> FluidPlan<D> {
             own("pressure", 1),
             own("mass", 1),
             own("wall", 1),
-            through("slots", "rate", 4),
+            through("slots", "rate", 3),
             through("slots", "side", side_width(D)),
         ];
         let reads = [&reads, &*self.plan.of_motion()].concat();
@@ -255,29 +245,30 @@ impl<const D: usize> FluidPlan<D> {
             let deviation: Vector<D> = take(&mut x);
             let (density, pressure) = (one(&mut x), one(&mut x));
             let (mass, wall) = (one(&mut x), one(&mut x));
-            let rates = [one(&mut x), one(&mut x), one(&mut x), one(&mut x)];
-            let [divergence, density_transport, pressure_transport, pressure_diffusion] = rates;
+            let rates = [one(&mut x), one(&mut x), one(&mut x)];
+            let [divergence, pressure_transport, pressure_diffusion] = rates;
             let before: Side<Traced, D> = side(&mut x);
             let zero = Traced::from(0.0);
-            let stiffness = self.fluid.wave_speed.powi(2);
-            let exchange = pressure_diffusion / Traced::from(stiffness);
-            let density_rate = density_transport - before.density * divergence + exchange;
+            let Fluid { density: at_rest, wave_speed, .. } = self.fluid;
+            let stiffness = wave_speed.powi(2);
             let compression = -before.density * stiffness * divergence;
             let pressure_rates = [compression, pressure_transport, pressure_diffusion];
             let pressure_rate = compression + pressure_transport + pressure_diffusion;
             let mean = pressure + step * 0.5 * pressure_rate;
             let powers = pressure_rates.map(|rate| step * mass * self.compliance * mean * rate);
             let terms = self.plan.drift_terms(powers, [&velocity, &deviation], [step, mass]);
-            let evolved = |is_on: bool, value: Traced, rate: Traced| match is_on {
-                true => value + step * rate,
-                false => value,
+            let evolved = pressure + step * pressure_rate;
+            let follows = match self.evolves {
+                true => fluid::density(evolved, at_rest, wave_speed),
+                false => density,
             };
             let next = self.plan.moved(&position, &(velocity + deviation), step);
             let still = self.plan.carried(&position, step, &mut x);
-            let next = still.into_iter().copied().zip(next.into_iter().copied()).chain([
-                (density, evolved(self.evolves, density, density_rate)),
-                (pressure, evolved(true, pressure, pressure_rate)),
-            ]);
+            let next = still
+                .into_iter()
+                .copied()
+                .zip(next.into_iter().copied())
+                .chain([(density, follows), (pressure, evolved)]);
             let terms = terms.into_iter().map(|term| (zero, term));
             next.chain(terms).map(|(still, moved)| if_fluid(wall, moved, still)).collect()
         })

@@ -1,14 +1,20 @@
 //! A drift of a fluid: density, pressure and places.
 
-use super::{Common, DensityRule, WeaklyCompressible};
+use piola_formulas::fluid;
+
+use super::{Common, DensityRule, Fluid, WeaklyCompressible};
 use crate::schemes::transport_velocity::ledger::Drift;
 
 impl<const D: usize> WeaklyCompressible<D> {
-    /// The drift of a fluid with the rates of the last pass.
+    /// The drift of a fluid with the rates of the last pass, theory (20) and (21).
+    ///
+    /// The two equations have the same rates but for `c^2`, so that one is integrated and the law
+    /// of state (25) gives the other. Side by side their difference would obey
+    /// `d delta/dt = d . grad delta`, which nothing damps, and grow from round-off.
     pub(super) fn drift(&self, common: &Common<D>, step: f64, state: &mut [f64]) -> Drift {
         let evolves = common.settings.density == DensityRule::Continuity;
         let diffuses = !common.settings.is_algebraic();
-        let compliance = self.compliance();
+        let (compliance, Fluid { density, wave_speed, .. }) = (self.compliance(), self.fluid);
         let (own, _) = common.parts(state);
         let (places, begin) = (common.support.list().places(), common.first());
         common.team().sums_over_parts(places.len(), own, |first, own, sums: &mut Drift| {
@@ -19,9 +25,10 @@ impl<const D: usize> WeaklyCompressible<D> {
                     continue;
                 }
                 let place = places[first + k] as usize;
+                let rates = self.pressure_rates(common, place);
+                let rate = rates.iter().sum::<f64>();
                 if diffuses {
-                    let (rates, mass) = (self.pressure_rates(common, place), common.mass[number]);
-                    let rate = rates.iter().sum::<f64>();
+                    let mass = common.mass[number];
                     let mean = own.pressure[k] + 0.5 * step * rate;
                     for (sum, rate) in sums.iter_mut().zip(rates) {
                         sum.power += step * mass * compliance * mean * rate;
@@ -29,8 +36,11 @@ impl<const D: usize> WeaklyCompressible<D> {
                     own.pressure[k] += step * rate;
                 }
                 common.add_turning(number, step, [velocity, deviation], sums);
-                if evolves {
-                    own.density[k] += step * self.density_rate(common, place);
+                if evolves && !Common::<D>::is_removed(own.density[k]) {
+                    own.density[k] = match diffuses {
+                        true => fluid::density(own.pressure[k], density, wave_speed),
+                        false => own.density[k] + step * rate / wave_speed.powi(2),
+                    };
                 }
                 common.advect(step, position, velocity + deviation);
             }
@@ -49,17 +59,8 @@ impl<const D: usize> WeaklyCompressible<D> {
         })
     }
 
-    /// Rate of the density in kg/(m^3 s) of the particle at `place`.
-    ///
-    /// It takes part in the exchange of its pressure, theory (20): the two have the same rates
-    /// then, but for `c^2`, and stay what the law of state says.
-    pub(super) fn density_rate(&self, common: &Common<D>, place: usize) -> f64 {
-        let rates = &self.rates[place];
-        let exchange = rates.pressure_diffusion / self.fluid.wave_speed.powi(2);
-        rates.density_transport - common.sides[place].density * rates.divergence + exchange
-    }
-
-    /// Rates of the pressure in Pa/s by compression, transport and diffusion.
+    /// Rates of the pressure in Pa/s by compression, transport and diffusion. Over `c^2` they are
+    /// those of the density.
     pub(super) fn pressure_rates(&self, common: &Common<D>, place: usize) -> [f64; 3] {
         let (rates, stiffness) = (&self.rates[place], self.fluid.wave_speed.powi(2));
         let compression = -common.sides[place].density * stiffness * rates.divergence;

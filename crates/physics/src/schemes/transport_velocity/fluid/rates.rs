@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 use piola_formulas::pairs::fluid::{RateConstants, RateSums, Rates as Law};
 
-use super::{Common, DensityRule, Rates, WeaklyCompressible};
+use super::{Common, Rates, WeaklyCompressible};
 use crate::Vector;
 use crate::operators::{Among, OfCenter, Term, gather};
 use crate::schemes::transport_velocity::Divergence;
@@ -39,9 +39,8 @@ impl<const D: usize> WeaklyCompressible<D> {
             softening: fluid::softening(h),
             diffusivity: common.settings.diffusivity(h, self.fluid.wave_speed),
         };
-        let corrects = corrections.density || corrections.pressure;
         let moves = corrections.divergence == Divergence::Transport;
-        (constants, (corrects, moves, !common.body_forces.is_empty()))
+        (constants, (corrections.transport, moves, !common.body_forces.is_empty()))
     }
 
     fn gather_rates<const CORRECTS: bool, const MOVES: bool, const FALLS: bool>(
@@ -57,14 +56,10 @@ impl<const D: usize> WeaklyCompressible<D> {
         });
         let law = Law::<D, CORRECTS, MOVES, FALLS>(constants);
         let sum = Term { law, source: (common.sides.as_slice(), half_force), among: Among::All };
-        let corrections = common.settings.corrections;
-        let evolves = common.settings.density != DensityRule::Summation;
         let close = |_: usize, sums: &RateSums<f64, D>, row: &mut Rates| {
-            let kept = |is_on: bool, sum| if is_on { sum } else { 0.0 };
             *row = Rates {
                 divergence: sums.divergence,
-                density_transport: kept(corrections.density && evolves, sums.density_transport),
-                pressure_transport: kept(corrections.pressure, sums.pressure_transport),
+                pressure_transport: sums.pressure_transport,
                 pressure_diffusion: sums.pressure_diffusion,
             };
         };

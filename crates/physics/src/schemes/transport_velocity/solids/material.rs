@@ -107,7 +107,7 @@ impl Solid {
         let work = side.volume * self.advance(rates, side, step.duration, &mut moved.matter);
         let of_all = &rates.common;
         moved.density +=
-            step.duration * (of_all.density_transport - side.density * of_all.divergence);
+            step.duration * (rates.density_transport - side.density * of_all.divergence);
         if step.evolves {
             let stiffness = self.state.wave_speed.powi(2);
             let compression = -side.density * stiffness * of_all.divergence;

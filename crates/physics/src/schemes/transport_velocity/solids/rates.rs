@@ -18,6 +18,8 @@ pub struct SolidRates<const D: usize, T = f64> {
     /// Velocity gradient `d u_i / d x_j` in 1/s, CTVF (31), corrected or not; of uhat with
     /// [`Divergence::Transport`].
     pub gradient: SMatrix<T, D, D>,
+    /// `d . grad rho` in kg/(m^3 s).
+    pub density_transport: T,
     /// What the deviation carries of deviatoric stress (xx, yy, zz, yz, xz, xy, in Pa/s), plastic
     /// strain, temperature and specific energy, a second each: `d . grad` of them, theory (68).
     pub transport: [T; MATTER],
@@ -28,7 +30,8 @@ pub struct SolidRates<const D: usize, T = f64> {
 impl<const D: usize> Default for SolidRates<D> {
     fn default() -> Self {
         let (common, gradient) = (Rates::default(), Tensor::zeros());
-        Self { common, gradient, transport: [0.0; MATTER], heating: 0.0 }
+        let (density_transport, heating) = (0.0, 0.0);
+        Self { common, gradient, density_transport, transport: [0.0; MATTER], heating }
     }
 }
 
@@ -37,10 +40,8 @@ impl<const D: usize> Default for SolidRates<D> {
 pub(in super::super) struct Counted {
     /// The divergence by other bodies.
     couples: f64,
-    /// What the deviation carries of the density.
-    density: f64,
-    /// The same of the pressure.
-    pressure: f64,
+    /// What the deviation carries of density and pressure.
+    transport: f64,
 }
 
 impl<const D: usize, T: Number> SolidRates<D, T> {
@@ -60,12 +61,12 @@ impl<const D: usize, T: Number> SolidRates<D, T> {
                 ALONE => gradient.trace(),
                 _ => gradient.trace() + sums.contact * counted.couples,
             },
-            density_transport: sums.density * counted.density,
-            pressure_transport: sums.pressure * counted.pressure,
+            pressure_transport: sums.pressure * counted.transport,
             pressure_diffusion: sums.diffusion,
         };
         let transport = Law::<D, KIND, CARRIES>::transport(sums);
-        Self { gradient, transport, heating: sums.heating, common }
+        let density_transport = sums.density * counted.transport;
+        Self { common, gradient, density_transport, transport, heating: sums.heating }
     }
 }
 
@@ -86,8 +87,7 @@ impl<const D: usize> Hypoelastic<D> {
         };
         let counted = Counted {
             couples: one_if(self.contact == Contact::Repulsive),
-            density: one_if(corrections.density),
-            pressure: one_if(corrections.pressure),
+            transport: one_if(corrections.transport),
         };
         let is_plain = self.is_elastic() && common.settings.is_algebraic();
         let kind = match (is_plain, common.continua.are_several()) {
@@ -95,7 +95,7 @@ impl<const D: usize> Hypoelastic<D> {
             (true, true) => ELASTIC,
             (false, _) => ANY,
         };
-        (constants, counted, (kind, corrections.density || corrections.pressure))
+        (constants, counted, (kind, corrections.transport))
     }
 
     /// Fills the rates of solids from what has been loaded.

@@ -188,7 +188,7 @@ impl<const D: usize> SolidPlan<D> {
                 let common = rates.common;
                 let common = [
                     common.divergence,
-                    common.density_transport,
+                    rates.density_transport,
                     common.pressure_transport,
                     common.pressure_diffusion,
                 ];
@@ -221,14 +221,15 @@ impl<const D: usize> SolidPlan<D> {
             let deviation: Vector<D> = take(&mut x);
             let (density, pressure) = (one(&mut x), one(&mut x));
             let (matter, mass, wall) = (matter(&mut x), one(&mut x), one(&mut x));
+            let (divergence, density_transport) = (one(&mut x), one(&mut x));
             let common = CommonRates {
-                divergence: one(&mut x),
-                density_transport: one(&mut x),
+                divergence,
                 pressure_transport: one(&mut x),
                 pressure_diffusion: one(&mut x),
             };
             let (gradient, transport) = (tensor::<D>(&mut x), self::matter(&mut x));
-            let rates = SolidRates { common, gradient, transport, heating: one(&mut x) };
+            let rates =
+                SolidRates { common, gradient, density_transport, transport, heating: one(&mut x) };
             let side: Side<Traced, D> = side(&mut x);
             let span = Step { duration: step, mass, evolves: !self.is_algebraic };
             // Density, pressure, material state, and the two works.
