@@ -4,11 +4,17 @@ use piola_formulas::fluid;
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::fluid::Wall;
 
-use super::{Common, Flow, Fluid, KEPT, Kept, Open, OpenBoundary, Seen, Side, WeaklyCompressible};
+use super::{
+    Common, Flow, Fluid, KEPT, Kept, LATE, Open, OpenBoundary, Seen, Side, WeaklyCompressible,
+};
 use crate::operators::{Among, NeighborBlock, visit};
 use crate::schemes::ledger::Total;
 use crate::schemes::transport_velocity::Continuum as _;
 use crate::{Vector, parallel};
+
+/// How far the pressure that a buffer takes from the fluid is ahead of the velocity by which sound leaves, in smoothing
+/// lengths that sound travels, theory (88): a long wave on a lattice is reflected least with it.
+const LEAD: f64 = 0.5;
 
 impl<const D: usize> WeaklyCompressible<D> {
     /// Completes the sides of buffers from those of the fluid around them, at a time in s, theory (86) to (88).
@@ -53,7 +59,7 @@ impl<const D: usize> WeaklyCompressible<D> {
             // At the start there is no past.
             if mean.slow.is_nan() {
                 mean.above = if count > 0.0 { mean.above } else { 0.0 };
-                mean.slow = mean.above;
+                (mean.slow, mean.late) = (mean.above, mean.above);
                 mean.inwards = if count > 0.0 { mean.inwards } else { 0.0 };
                 mean.stream = mean.inwards;
             }
@@ -63,11 +69,11 @@ impl<const D: usize> WeaklyCompressible<D> {
             let (boundary, mean) =
                 (boundary_of(number), &means[roles[number as usize] as usize - 1]);
             let pressure = match (&boundary.flow, seen.pressure) {
-                (Flow::Velocity(_), Some(pressure)) => pressure,
-                (Flow::Velocity(_), None) => mean.above,
-                (Flow::Pressure(_), Some(pressure)) => pressure - mean.slow,
+                (Flow::Velocity(_), Some(pressure)) => pressure - mean.lead(),
+                (Flow::Velocity(_), None) => mean.late,
+                (Flow::Pressure(_), Some(pressure)) => pressure - mean.lead() - mean.slow,
                 (Flow::Pressure(_), None) => {
-                    boundary.reference(&positions[place], time) + mean.sound()
+                    boundary.reference(&positions[place], time) + mean.late - mean.slow
                 }
             };
             let side: &mut Side<D> = &mut common.sides[place];
@@ -112,16 +118,20 @@ impl<const D: usize> WeaklyCompressible<D> {
             let along = velocity.dot(&boundary.normal) - mean.sound() / impedance;
             own.position[row] += boundary.normal * (step * along);
             if matches!(boundary.flow, Flow::Pressure(_)) {
-                own.velocity[row] += boundary.normal * (mean.gain() * follows(step, boundary));
+                let share = follows(step, boundary.relaxation);
+                own.velocity[row] += boundary.normal * (mean.gain() * share);
             }
         }
+        let lead = LEAD * common.support.smoothing_length() / self.fluid.wave_speed;
         let (_, kept) = Kept::of(common, state);
         for ((mean, boundary), kept) in
             open.means.iter().zip(&open.boundaries.all).zip(kept.each.chunks_exact_mut(KEPT))
         {
-            let share = follows(step, boundary);
+            let share = follows(step, boundary.relaxation);
             kept[0] = mean.slow + mean.sound() * share;
             kept[3] = mean.stream + mean.gain() * share;
+            // What grows evenly is late by `lead`, whatever the step.
+            kept[LATE] = mean.late + mean.lead() * (step / lead).min(1.0);
         }
     }
 
@@ -220,9 +230,9 @@ fn part<const D: usize>(
     });
 }
 
-/// What share of their change slow means follow within a step in s.
-fn follows<const D: usize>(step: f64, boundary: &OpenBoundary<D>) -> f64 {
-    -(-step / boundary.relaxation).exp_m1()
+/// What share of their change means that follow in a time in s do within a step in s.
+fn follows(step: f64, time: f64) -> f64 {
+    -(-step / time).exp_m1()
 }
 
 /// What the particle of a buffer takes from the fluid around it.

@@ -117,6 +117,8 @@ struct Mean {
     above: f64,
     /// The same, as it has been in the mean of the relaxation time.
     slow: f64,
+    /// The same, as late as what buffers take from the fluid is early, theory (88).
+    late: f64,
     /// The fluid's velocity along the normal in the mean, in m/s.
     inwards: f64,
     /// The same, as it has been in the mean of the relaxation time.
@@ -127,6 +129,11 @@ impl Mean {
     /// What of the pressure is sound, in Pa.
     fn sound(&self) -> f64 {
         self.above - self.slow
+    }
+
+    /// By how much the pressure is ahead of that in the buffer, in Pa.
+    fn lead(&self) -> f64 {
+        self.above - self.late
     }
 
     /// By how much the stream has grown faster than it is followed, in m/s.
@@ -150,8 +157,11 @@ struct Seen<const D: usize> {
 /// not be born, and how many ever were.
 const COUNTS: usize = 3;
 /// Numbers that it keeps of each: the slow pressure, the mass in kg that has entered and left, the slow velocity
-/// along the normal in m/s, and the energy in J and the momentum that particles have brought in, less what they took out.
-const KEPT: usize = 5 + MOST_COMPONENTS;
+/// along the normal in m/s, the energy in J and the momentum that particles have brought in, less what they took out, and
+/// the late pressure.
+const KEPT: usize = 6 + MOST_COMPONENTS;
+/// Where the last of them is.
+const LATE: usize = KEPT - 1;
 
 /// The open boundaries while a run goes.
 pub(super) struct Open<const D: usize> {
@@ -326,7 +336,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let (stored, kept) = Kept::of(common, state);
         kept.counts[0] = reserve as f64;
         for kept in kept.each.chunks_exact_mut(KEPT) {
-            (kept[0], kept[3]) = (f64::NAN, f64::NAN);
+            (kept[0], kept[3], kept[LATE]) = (f64::NAN, f64::NAN, f64::NAN);
         }
         for (role, buffer) in stored.opening.iter_mut().zip(&open.boundaries.buffers) {
             *role = f64::from(*buffer);
@@ -350,7 +360,9 @@ impl<const D: usize> WeaklyCompressible<D> {
         let stored = Stored::<D>::of(at.tail, count);
         let each = LEDGER.behind(D, stored.tail)[1 + COUNTS..].chunks_exact(KEPT);
         let both = open.means.iter_mut().zip(each);
-        both.for_each(|(mean, kept)| (mean.slow, mean.stream) = (kept[0], kept[3]));
+        for (mean, kept) in both {
+            (mean.slow, mean.stream, mean.late) = (kept[0], kept[3], kept[LATE]);
+        }
         let (roles, nested, removed) = (&open.roles, &open.nested, &common.removed);
         let now = |row: usize| {
             let is_removed = Common::<D>::is_removed(at.density[row]);
@@ -409,7 +421,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let (_, kept) = Kept::of(common, state);
         for (kept, mean) in kept.each.chunks_exact_mut(KEPT).zip(&self.open.means) {
             if kept[0].is_nan() {
-                (kept[0], kept[3]) = (mean.slow, mean.stream);
+                (kept[0], kept[3], kept[LATE]) = (mean.slow, mean.stream, mean.late);
             }
         }
     }
