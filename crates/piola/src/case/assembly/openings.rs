@@ -111,20 +111,34 @@ pub(super) fn open<const D: usize>(
             Err(problem) => problems.push(problem),
         }
     }
-    // What is in the way may move out of it.
-    let is_fixed = case.boundaries.is_empty() && case.systems.is_empty();
-    if problems.is_empty() && open.all.len() > 1 && is_fixed && !settings.settings.free_surface {
-        problems.extend(cut_off(case, particles, &open)?);
+    let cut = match problems.is_empty() && open.all.len() > 1 {
+        true => cut_off(case, particles, &open)?,
+        false => Vec::new(),
+    };
+    // What is in the way may move out of it, or the fluid rise above it.
+    let may_open = !case.boundaries.is_empty() || !case.systems.is_empty();
+    let may_open = may_open || settings.settings.free_surface;
+    if !may_open {
+        problems.extend(cut.iter().map(|boundary| {
+            let place = case.bodies[boundary.body as usize].name.place;
+            let help = "let fluid fill a way between them, two spacings wide at least, or remove the opening";
+            case.problem_at(place, no_way_from(boundary), "cut off", Some(help.to_owned()))
+        }));
     }
     if !problems.is_empty() {
         return Err(problems);
     }
+    let cut = cut.iter().map(|boundary| {
+        let message = no_way_from(boundary);
+        format!("{message} at the start: nothing passes it until one opens, by the motion of what is in the way or above it")
+    });
+    let cut: Vec<String> = cut.collect();
     let in_buffers =
         particles.body.iter_mut().zip(&open.buffers).filter(|(_, buffer)| **buffer > 0);
     in_buffers.for_each(|(body, _)| *body = fluid);
     let unbalanced = unbalanced(case, &inflows, settings.settings.free_surface);
     let slow = slow(&open, &inflows, extent(particles));
-    let warnings = unbalanced.into_iter().chain(slow).collect();
+    let warnings = unbalanced.into_iter().chain(slow).chain(cut).collect();
     let in_buffers = open.buffers.iter().filter(|buffer| **buffer > 0).count();
     let all = particles.body.iter().filter(|body| **body == fluid).count();
     let most = (RESERVE * all as f64).ceil() as usize;
@@ -141,11 +155,11 @@ pub(super) fn open<const D: usize>(
 const NEXT: f64 = 1.5;
 
 /// The openings from which no way through the fluid leads to another one.
-fn cut_off<const D: usize>(
+fn cut_off<'a, const D: usize>(
     case: &Case,
     particles: &Particles<D>,
-    open: &OpenBoundaries<D>,
-) -> Result<Vec<Problem>, Vec<Problem>> {
+    open: &'a OpenBoundaries<D>,
+) -> Result<Vec<&'a OpenBoundary<D>>, Vec<Problem>> {
     let reach: Vec<f64> = particles.spacing.iter().map(|spacing| NEXT * spacing).collect();
     let list = search(&particles.position, &reach, &super::domain(case)?)
         .map_err(|error| vec![case.problem_at(case.scheme.place, error.to_string(), "", None)])?;
@@ -169,15 +183,12 @@ fn cut_off<const D: usize>(
         false
     };
     let cut = (1..).zip(&open.all).filter(|(own, _)| !leads_on(*own));
-    let problem = |(_, boundary): (u32, &OpenBoundary<D>)| {
-        let place = case.bodies[boundary.body as usize].name.place;
-        let message =
-            format!("no way through the fluid leads from `{}` to another opening", boundary.name);
-        let help =
-            "let fluid fill a way between them, two spacings wide at least, or remove the opening";
-        case.problem_at(place, message, "cut off", Some(help.to_owned()))
-    };
-    Ok(cut.map(problem).collect())
+    Ok(cut.map(|(_, boundary)| boundary).collect())
+}
+
+/// What is said of an opening that is cut off.
+fn no_way_from<const D: usize>(boundary: &OpenBoundary<D>) -> String {
+    format!("no way through the fluid leads from `{}` to another opening", boundary.name)
 }
 
 /// The boundary of one buffer, with what comes in, if it is prescribed.
