@@ -321,8 +321,8 @@ pub struct RateConstants {
     pub diffusivity: f64,
 }
 
-/// The rates of density and pressure, CTVF (19), (23), (26), theory (20): `CORRECTS` says whether the
-/// deviation carries them, `MOVES` whether the divergence is that of the transport velocity, `FALLS`
+/// The rates of the pressure, CTVF (19), (23), (26), theory (21): `CORRECTS` says whether the
+/// deviation carries it, `MOVES` whether the divergence is that of the transport velocity, `FALLS`
 /// whether there are body forces. Beside a side stands half of the body force in m/s^2, which is
 /// read of the particle itself only.
 #[derive(Clone, Copy, Debug)]

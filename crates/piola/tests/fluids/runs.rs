@@ -69,8 +69,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
     }
 }
 
-/// Where both are integrated, what they differ by has no diffusion: it is carried along by the
-/// deviation, theory (20), (21), and grows.
+/// Were both integrated, what they differ by would remain, theory (25), and grow over thousands of
+/// steps: here it is there at the start.
 #[test]
 fn densities_and_pressures_do_not_drift_apart() {
     let settings = Settings { density: DensityRule::Continuity, ..SETTINGS };

@@ -6,7 +6,8 @@ pub use piola_formulas::pairs::fluid::Viscous;
 /// How the density of a fluid is found, theory (20) and (26).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DensityRule {
-    /// By the continuity equation, CTVF (25) corrected: integrated, or from a pressure that is.
+    /// By the continuity equation, CTVF (25) corrected: integrated or, in a fluid with an integrated
+    /// pressure, from that by the law of state.
     Continuity,
     /// As the sum of the kernel over all masses.
     Summation,

@@ -116,8 +116,9 @@ pub(super) fn open<const D: usize>(
         false => Vec::new(),
     };
     // What is in the way may move out of it, or the fluid rise above it.
-    let may_open = !case.boundaries.is_empty() || !case.systems.is_empty();
-    let may_open = may_open || settings.settings.free_surface;
+    let is_of_system = |body: &Body| body.system.is_some();
+    let moves = !case.boundaries.is_empty() || case.bodies.iter().any(is_of_system);
+    let may_open = moves || settings.settings.free_surface;
     if !may_open {
         problems.extend(cut.iter().map(|boundary| {
             let place = case.bodies[boundary.body as usize].name.place;
@@ -130,7 +131,10 @@ pub(super) fn open<const D: usize>(
     }
     let cut = cut.iter().map(|boundary| {
         let message = no_way_from(boundary);
-        format!("{message} at the start: nothing passes it until one opens, by the motion of what is in the way or above it")
+        format!(
+            "{message} at the start: nothing passes until a moving body or rising \
+             fluid opens one"
+        )
     });
     let cut: Vec<String> = cut.collect();
     let in_buffers =

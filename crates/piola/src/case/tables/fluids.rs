@@ -176,8 +176,8 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
 const DENSITIES: Choices = choices(&[
     choice(
         "continuity",
-        "by the continuity equation, CTVF (25) corrected; with `edac` from the \
-         pressure by CTVF (8), which satisfies it",
+        "by the continuity equation, CTVF (25) corrected; in fluids with `edac` from the pressure by \
+         CTVF (8), which satisfies it",
     ),
     choice("summation", "as the sum over masses"),
 ]);

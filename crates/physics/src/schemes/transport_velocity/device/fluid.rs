@@ -31,7 +31,7 @@ const FIGURES: usize = 5;
 pub(in super::super) struct FluidPlan<const D: usize> {
     plan: Plan<D>,
     fluid: Fluid,
-    /// Whether densities evolve.
+    /// Whether densities follow from pressures.
     evolves: bool,
     rate_constants: RateConstants,
     rate_kind: (bool, bool, bool),
@@ -191,7 +191,7 @@ impl<const D: usize> FluidPlan<D> {
         })
     }
 
-    /// Rates of density and pressure.
+    /// Rates of the pressure.
     fn rates(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let constants = self.rate_constants;
         let (corrects, moves, falls) = self.rate_kind;

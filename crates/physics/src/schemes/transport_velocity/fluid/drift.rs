@@ -36,7 +36,7 @@ impl<const D: usize> WeaklyCompressible<D> {
                     own.pressure[k] += step * rate;
                 }
                 common.add_turning(number, step, [velocity, deviation], sums);
-                if evolves && !Common::<D>::is_removed(own.density[k]) {
+                if evolves {
                     own.density[k] = match diffuses {
                         true => fluid::density(own.pressure[k], density, wave_speed),
                         false => own.density[k] + step * rate / wave_speed.powi(2),

@@ -1,4 +1,4 @@
-//! The rates of density and pressure.
+//! The rates of the pressure, which over `c^2` are those of the density.
 
 use piola_formulas::fluid;
 use piola_formulas::pairs::fluid::{RateConstants, RateSums, Rates as Law};
@@ -27,7 +27,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         self.rates = rates;
     }
 
-    /// The constants of the law of rates, and which one it is: whether the deviation carries them,
+    /// The constants of the law of rates, and which one it is: whether the deviation carries it,
     /// whether the divergence is that of the transport velocity, whether there are body forces.
     pub(in super::super) fn rate_law(
         &self,

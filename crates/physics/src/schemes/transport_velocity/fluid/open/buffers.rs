@@ -5,15 +5,16 @@ use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::fluid::Wall;
 
 use super::{
-    Common, Flow, Fluid, KEPT, Kept, LATE, Open, OpenBoundary, Seen, Side, WeaklyCompressible,
+    Common, Flow, Fluid, KEPT, Kept, LATE_PRESSURE, Open, OpenBoundary, Seen, Side,
+    WeaklyCompressible,
 };
 use crate::operators::{Among, NeighborBlock, visit};
 use crate::schemes::ledger::Total;
 use crate::schemes::transport_velocity::Continuum as _;
 use crate::{Vector, parallel};
 
-/// How far the pressure that a buffer takes from the fluid is ahead of the velocity by which sound leaves, in smoothing
-/// lengths that sound travels, theory (88): a long wave on a lattice is reflected least with it.
+/// Lag of the mean pressure that buffers take from the fluid, in `h/c`, theory (88): long waves on a lattice are
+/// reflected least with it.
 const LEAD: f64 = 0.5;
 
 impl<const D: usize> WeaklyCompressible<D> {
@@ -130,8 +131,8 @@ impl<const D: usize> WeaklyCompressible<D> {
             let share = follows(step, boundary.relaxation);
             kept[0] = mean.slow + mean.sound() * share;
             kept[3] = mean.stream + mean.gain() * share;
-            // What grows evenly is late by `lead`, whatever the step.
-            kept[LATE] = mean.late + mean.lead() * (step / lead).min(1.0);
+            // What grows evenly is late by `lead`, whatever the step is up to that.
+            kept[LATE_PRESSURE] = mean.late + mean.lead() * (step / lead).min(1.0);
         }
     }
 

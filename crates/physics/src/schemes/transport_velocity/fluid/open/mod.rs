@@ -160,8 +160,8 @@ const COUNTS: usize = 3;
 /// along the normal in m/s, the energy in J and the momentum that particles have brought in, less what they took out, and
 /// the late pressure.
 const KEPT: usize = 6 + MOST_COMPONENTS;
-/// Where the last of them is.
-const LATE: usize = KEPT - 1;
+/// Where the late pressure is.
+const LATE_PRESSURE: usize = KEPT - 1;
 
 /// The open boundaries while a run goes.
 pub(super) struct Open<const D: usize> {
@@ -336,7 +336,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let (stored, kept) = Kept::of(common, state);
         kept.counts[0] = reserve as f64;
         for kept in kept.each.chunks_exact_mut(KEPT) {
-            (kept[0], kept[3], kept[LATE]) = (f64::NAN, f64::NAN, f64::NAN);
+            (kept[0], kept[3], kept[LATE_PRESSURE]) = (f64::NAN, f64::NAN, f64::NAN);
         }
         for (role, buffer) in stored.opening.iter_mut().zip(&open.boundaries.buffers) {
             *role = f64::from(*buffer);
@@ -361,7 +361,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let each = LEDGER.behind(D, stored.tail)[1 + COUNTS..].chunks_exact(KEPT);
         let both = open.means.iter_mut().zip(each);
         for (mean, kept) in both {
-            (mean.slow, mean.stream, mean.late) = (kept[0], kept[3], kept[LATE]);
+            (mean.slow, mean.stream, mean.late) = (kept[0], kept[3], kept[LATE_PRESSURE]);
         }
         let (roles, nested, removed) = (&open.roles, &open.nested, &common.removed);
         let now = |row: usize| {
@@ -421,7 +421,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let (_, kept) = Kept::of(common, state);
         for (kept, mean) in kept.each.chunks_exact_mut(KEPT).zip(&self.open.means) {
             if kept[0].is_nan() {
-                (kept[0], kept[3], kept[LATE]) = (mean.slow, mean.stream, mean.late);
+                (kept[0], kept[3], kept[LATE_PRESSURE]) = (mean.slow, mean.stream, mean.late);
             }
         }
     }
