@@ -75,10 +75,10 @@ fn fluids_move_what_their_tables_have() {
     // Padded rows of indices, each with its start and two lengths.
     let rows = 16.0 + groups * 8.0 * 4.0;
     let side = 8.0 * NUMBER;
-    let own = side + 4.0 * NUMBER;
+    let own = side + 3.0 * NUMBER;
     let rates = traffic(scheme, "rates");
     assert_close(&rates, [own, rows + groups * 8.0 * (side + place), own + place + rows]);
-    // Eight vectors of accelerations and sums in place of four rates.
+    // Eight vectors of accelerations and sums in place of three rates.
     let own = side + 16.0 * NUMBER;
     let forces = traffic(scheme, "forces");
     assert_close(&forces, [own, rows + groups * 8.0 * (side + place), own + place + rows]);
