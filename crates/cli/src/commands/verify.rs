@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use piola::case::page::{PageCase, Row, SettingRuns};
+use piola::case::page::{Attempt, PageCase, Row, SettingRuns};
 use piola::case::verify::{NotRun, VariantRun, needed_variants, verify as evaluate};
 use piola::case::{Case, Finished, Level, LoadOptions, Session, load};
 use piola::time::Outcome;
@@ -206,20 +206,20 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
             let number = runs.len() + 1;
             let case = read(variant, *level).map_err(|fault| fault.report.trim_end().to_owned())?;
             let traits = base.traits_of(variant);
-            let mut leave = |case: &Case, why: &str| {
-                runs.push((variant.map(str::to_owned), case.clone(), None));
+            let mut missing = |case: &Case, attempt: Attempt, why: &str| {
+                runs.push((variant.map(str::to_owned), case.clone(), attempt));
                 Err(NotRun { case: Some(Box::new(case.clone())), reason: why.to_owned() })
             };
             if traits.is_long && !arguments.is_long_wanted(variant)
                 || only_paper && !traits.is_paper
             {
-                return leave(&case, "it takes long, and has not been run");
+                return missing(&case, Attempt::Left, "it takes long, and has not been run");
             }
             let same = known.iter().find(|(as_run, _)| *as_run == case.as_run);
             let run = match same {
                 Some((_, run)) => Rc::clone(run),
                 None if stop.load(Ordering::Relaxed) => {
-                    return leave(&case, "interrupted before its run");
+                    return missing(&case, Attempt::Left, "interrupted before its run");
                 }
                 None => {
                     let setting = level.name();
@@ -227,19 +227,21 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
                         Some(variant) => format!("{name} {setting} {variant} ({number} of {all})"),
                         None => format!("{name} {setting} ({number} of {all})"),
                     };
-                    let missing = |reason| NotRun { case: Some(Box::new(case.clone())), reason };
                     let kept = arguments.keep.as_ref();
                     let kept = kept.map(|keep| kept_folder(keep, path, *level, variant));
-                    let run = run_quietly(&case, &label, kept.as_deref(), stop);
-                    let run = Rc::new(run.map_err(missing)?);
-                    if run.summary.outcome == Outcome::Interrupted {
-                        return leave(&case, "interrupted");
-                    }
+                    let run = match run_quietly(&case, &label, kept.as_deref(), stop) {
+                        Err(reason) => return missing(&case, Attempt::Failed, &reason),
+                        Ok(run) if run.summary.outcome == Outcome::Interrupted => {
+                            return missing(&case, Attempt::Left, "interrupted");
+                        }
+                        Ok(run) => Rc::new(run),
+                    };
                     known.push((case.as_run.clone(), Rc::clone(&run)));
                     run
                 }
             };
-            runs.push((variant.map(str::to_owned), case.clone(), Some(Rc::clone(&run))));
+            let finished = Attempt::Finished(Rc::clone(&run));
+            runs.push((variant.map(str::to_owned), case.clone(), finished));
             Ok(VariantRun { case, run })
         });
         if only_paper {

@@ -176,6 +176,21 @@ fn a_case_that_takes_long_runs_only_if_asked() {
     assert_contains(&stdout, &["1 check of 1 case", "1 more check with `--long`"]);
     let (stdout, _) = place.run("verify bar --full --long=base", 0);
     assert_contains(&stdout, &["2 checks of 1 case: 2 passed"]);
+    // One that is asked for and cannot begin fails; what an earlier one gave stays on the page.
+    place.run("verify bar --full --long=base --keep kept --page page.md", 0);
+    let dated = || {
+        let page = place.read("page.md");
+        page.lines().find(|line| line.starts_with("| case, ")).unwrap().to_owned()
+    };
+    let known = dated();
+    let record = place.read("kept/bar/case/run.json");
+    place.write("kept/bar/case/run.json", &record[..record.len() / 2]);
+    let again = "verify bar --full --long=base --keep kept --page page.md";
+    let (stdout, _) = place.run(again, 1);
+    let told = ["1 passed, 1 failed", "kept/bar/case", "remove that folder to begin anew"];
+    assert_contains(&stdout, &told);
+    assert!(!stdout.contains("--long"), "{stdout}");
+    assert_eq!(dated(), known);
 }
 
 #[test]

@@ -36,13 +36,32 @@ pub struct SettingRuns {
     /// The checks.
     pub rows: Vec<CheckRow>,
     /// What was run, `None` for the case itself, each with the case as it was run.
-    pub runs: Vec<(Option<String>, Case, Option<Rc<Finished>>)>,
+    pub runs: Vec<(Option<String>, Case, Attempt)>,
+}
+
+/// What came of a run.
+pub enum Attempt {
+    /// Its results.
+    Finished(Rc<Finished>),
+    /// It was not asked for, or interrupted.
+    Left,
+    /// It could not begin, or not be continued.
+    Failed,
+}
+
+impl Attempt {
+    fn finished(&self) -> Option<&Finished> {
+        match self {
+            Self::Finished(run) => Some(run),
+            Self::Left | Self::Failed => None,
+        }
+    }
 }
 
 impl SettingRuns {
     /// The runs that there are, by name.
     fn finished(&self) -> impl Iterator<Item = (&Option<String>, &Finished)> {
-        self.runs.iter().filter_map(|(name, _, run)| Some((name, run.as_deref()?)))
+        self.runs.iter().filter_map(|(name, _, run)| Some((name, run.finished()?)))
     }
 }
 
@@ -76,7 +95,7 @@ impl PageCase {
             }
         }
         let finished = self.settings.iter().flat_map(|setting| &setting.runs);
-        let particles = finished.filter_map(|(.., run)| Some(run.as_ref()?.particles));
+        let particles = finished.filter_map(|(.., run)| Some(run.finished()?.particles));
         let results = CaseResults {
             id: self.id(),
             name: self.name.clone(),
@@ -99,13 +118,16 @@ impl PageCase {
             for row in &setting.rows {
                 let known = |name: &Option<String>| setting.runs.iter().find(|run| run.0 == *name);
                 let runs: Vec<_> = row.runs.iter().filter_map(known).collect();
-                let finished = runs.iter().filter_map(|(.., run)| run.as_ref());
-                let work = finished.clone().map(|run| run.summary.evaluations).sum();
+                let finished = runs.iter().filter_map(|(.., run)| run.finished());
+                let work = finished.map(|run| run.summary.evaluations).sum();
+                let is_left = runs.iter().any(|(.., run)| matches!(run, Attempt::Left));
+                let has_failed = runs.iter().any(|(.., run)| matches!(run, Attempt::Failed));
                 let sums: Vec<String> =
                     runs.iter().map(|(_, case, _)| case.fingerprint()).collect();
                 let mut new = Row::new(row, setting.case.level, work, sums.join(" "));
-                new.is_interrupted = !row.is_long && runs.iter().any(|(.., run)| run.is_none());
-                if row.is_long && finished.count() == row.runs.len() {
+                new.is_interrupted = !row.is_long && is_left;
+                new.has_no_run = row.is_long && has_failed && !is_left;
+                if row.is_long && !is_left {
                     new.date = Some(today.to_owned());
                 }
                 rows.retain(|other| {

@@ -93,6 +93,10 @@ pub struct Row {
     /// Whether an interruption came before the end of its runs. Such a row is on no page.
     #[serde(skip)]
     pub is_interrupted: bool,
+    /// Whether one of its runs takes long and could not begin, or not be continued. It fails, but an earlier result stays
+    /// on the page.
+    #[serde(skip)]
+    pub has_no_run: bool,
 }
 
 impl Row {
@@ -122,6 +126,7 @@ impl Row {
             is_long: row.is_long,
             date: None,
             is_interrupted: false,
+            has_no_run: false,
         }
     }
 
@@ -153,11 +158,12 @@ impl Row {
 }
 
 impl CaseResults {
-    /// Takes what `earlier` has of runs that take long, or came after an interruption, and that were not run again, of the
-    /// case as it is now.
+    /// Takes what `earlier` has of runs that were not run again, since they take long, came after an interruption or could
+    /// not begin, of the case as it is now.
     pub fn keep(&mut self, earlier: &Self) {
-        let is_part = self.rows.iter().any(|row| row.is_long || row.is_interrupted);
-        for row in self.rows.iter_mut().filter(|row| !row.was_run()) {
+        let is_part =
+            self.rows.iter().any(|row| row.is_long || row.is_interrupted || row.has_no_run);
+        for row in self.rows.iter_mut().filter(|row| !row.was_run() || row.has_no_run) {
             let same = || earlier.rows.iter().filter(|known| known.was_run() && known.is_same(row));
             // Two checks may ask for different bounds of one quantity, and a check may have moved.
             // Units are only known from values: what is asked are words among those of the row that is known.
