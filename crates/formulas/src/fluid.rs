@@ -42,11 +42,18 @@ pub fn exchange_scale<T: Number>(densities: T, square: T, softening: f64) -> T {
 }
 
 /// Diffusion between two particles: `4 nu (r_ab . grad W_ab) scale` with [`exchange_scale`],
-/// CTVF (26), (27), theory (23). Times `m_b` and the difference of a field between a and b it is the rate at
+/// CTVF (26), theory (23). Times `m_b` and the difference of a field between a and b it is the rate at
 /// a of `nu lap`. Negative: what is larger at a than around it falls.
 #[inline(always)]
 pub fn diffusion<T: Number>(diffusivity: f64, square: T, slope: T, scale: T) -> T {
     square * slope * scale * (4.0 * diffusivity)
+}
+
+/// Viscosity between two particles, with the sum of their densities: `4 nu (r_ab . grad W_ab) / (r_ab^2 (rho_a + rho_b))`,
+/// which is finite without the softening of CTVF (27), theory (23). Times `m_b u_ab` it is the acceleration of a by `nu lap u`.
+#[inline(always)]
+pub fn viscous_drag<T: Number>(viscosity: f64, slope: T, densities: T) -> T {
+    slope * densities.recip() * (4.0 * viscosity)
 }
 
 /// Viscous stress between two particles in D dimensions, for `approach = u_ab . r_ab` and [`exchange_scale`]: times `m_b r_ab`

@@ -50,9 +50,7 @@ fn gathers(dialect: Dialect) -> [Pass; 4] {
         viscosity: 1e-2,
         viscous: Viscous::Laplacian,
         artificial: 0.0,
-        stress: 1.0,
-        dilatation: 1.0,
-        transport: 0.0,
+        dilatation: 0.0,
         crowding: 0.02,
     });
     let forces = Gather::<ForceSum<2>, _>::new(dialect, "forces", &space, Among::All, Order::Lanes)

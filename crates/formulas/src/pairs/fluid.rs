@@ -63,17 +63,17 @@ impl Viscous {
     }
 
     /// The direction and the factor of the force between two particles where velocities differ by a `jump` in m/s,
-    /// with the `slope` of the kernel and an [`exchange_scale`](fluid::exchange_scale).
+    /// with the `slope` of the kernel, the sum of their densities and an [`exchange_scale`](fluid::exchange_scale).
     #[inline(always)]
     fn force<T: Number, const D: usize>(
         self,
         viscosity: f64,
         jump: &Of<Components<D>, T>,
         pair: &Of<MovingPair<D>, T>,
-        [slope, scale]: [T; 2],
+        [slope, densities, scale]: [T; 3],
     ) -> (Of<Components<D>, T>, T) {
         match self {
-            Self::Laplacian => (*jump, fluid::diffusion(viscosity, pair.square, slope, scale)),
+            Self::Laplacian => (*jump, fluid::viscous_drag(viscosity, slope, densities)),
             Self::Stress => {
                 let approach = dot(jump, &pair.separation);
                 (pair.separation, fluid::viscous_push::<T, D>(viscosity, approach, slope, scale))
@@ -82,12 +82,12 @@ impl Viscous {
     }
 }
 
-/// Which corrections of the momentum equation a law is made for: none of them,
+/// Which corrections of the momentum equation a law is made for: none,
 pub const NONE: u8 = 0;
-/// the stress with the dilatation of the deviation,
+/// `(d . grad) u`,
 pub const FULL: u8 = 1;
-/// or any of them, by the factors of [`ForceConstants`].
-pub const MIXED: u8 = 2;
+/// or the stress of CTVF (27), with the dilatation as [`ForceConstants`] has it.
+pub const STRESS: u8 = 2;
 
 /// The constants of [`Forces`].
 #[derive(Clone, Copy, Debug)]
@@ -100,18 +100,14 @@ pub struct ForceConstants {
     pub viscous: Viscous,
     /// `alpha h c` of CTVF (28) in m^2/s.
     pub artificial: f64,
-    /// 1 where the correction of the stress is on, 0 otherwise.
-    pub stress: f64,
-    /// 1 where the dilatation of the deviation is on.
+    /// 1 where `- u div uhat` of CTVF (27) is beside its stress, 0 otherwise.
     pub dilatation: f64,
-    /// 1 where that of the transport velocity is on.
-    pub transport: f64,
     /// `1 / W(dx)` in m^D.
     pub crowding: f64,
 }
 
-/// The accelerations of a fluid, CTVF (23), (27), (28), (35), theory (21) to (24): `CORRECTS` is one of
-/// [`NONE`], [`FULL`] and [`MIXED`], `ARTIFICIAL` says whether there is artificial viscosity, `CROWDING`
+/// The accelerations of a fluid, CTVF (18), (23), (27), (28), (35), theory (22) to (24): `CORRECTS` is one of
+/// [`NONE`], [`FULL`] and [`STRESS`], `ARTIFICIAL` says whether there is artificial viscosity, `CROWDING`
 /// whether particles are shifted by SPST.
 #[derive(Clone, Copy, Debug)]
 pub struct Forces<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(
@@ -129,10 +125,8 @@ record! {
         pub artificial_viscosity: Components<D>,
         /// Pressure and viscosity of walls.
         pub walls: Components<D>,
-        /// `sum V_b u_b d_b . grad W_ab`.
+        /// `sum V_b (u_b - u_a) d_a . grad W_ab`, or the corrections of CTVF (27).
         pub carried: Components<D>,
-        /// What stands before `u_a` in the corrections, 1/s.
-        pub stretch: One,
         /// `sum V_b grad W_ab` in 1/m.
         pub volume: Components<D>,
         /// `sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab` of CTVF (35) in 1/m.
@@ -156,24 +150,20 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
     ) {
         let slope = other.volume * pair.slope;
         if CORRECTS != NONE {
-            // V_b d_b . grad W_ab, and the same with the deviation of a.
-            let carried = dot(&other.deviation, &pair.separation) * slope;
             let mine = dot(&me.deviation, &pair.separation) * slope;
-            let ratio = other.density * me.density.recip();
+            let jump = difference(&me.velocity, &other.velocity);
             if CORRECTS == FULL {
                 for i in 0..D {
-                    sums.carried[i] += other.velocity[i] * carried;
+                    sums.carried[i] -= jump[i] * mine;
                 }
-                sums.stretch += mine + (mine - carried) * ratio;
             } else {
-                let jump = difference(&me.velocity, &other.velocity);
+                let carried = dot(&other.deviation, &pair.separation) * slope;
                 let opening = dot(&jump, &pair.separation) * slope;
+                let ratio = other.density * me.density.recip();
+                let stretch = mine * ratio + (mine - carried + opening) * self.0.dilatation;
                 for i in 0..D {
-                    sums.carried[i] += other.velocity[i] * carried * self.0.stress;
+                    sums.carried[i] += other.velocity[i] * carried + me.velocity[i] * stretch;
                 }
-                sums.stretch += mine * ratio * self.0.stress
-                    + (mine - carried * ratio) * self.0.dilatation
-                    + (mine - carried + opening) * self.0.transport;
             }
         }
         if CROWDING {
@@ -206,10 +196,10 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
     ) {
         let slope = other.mass() * pair.slope;
         let jump = difference(&me.velocity, &other.velocity);
-        let scale =
-            fluid::exchange_scale(me.density + other.density, pair.square, self.0.softening);
+        let densities = me.density + other.density;
+        let scale = fluid::exchange_scale(densities, pair.square, self.0.softening);
         let ForceConstants { viscous, viscosity, .. } = self.0;
-        let (way, exchange) = viscous.force(viscosity, &jump, pair, [slope, scale]);
+        let (way, exchange) = viscous.force(viscosity, &jump, pair, [slope, densities, scale]);
         let pressure = slope * (me.load + other.load);
         for i in 0..D {
             sums.pressure[i] -= pair.separation[i] * pressure;
@@ -283,10 +273,12 @@ impl<const D: usize> Wall<D> {
         pair: &Of<MovingPair<D>, T>,
         sum: &mut Of<Components<D>, T>,
     ) {
-        let scale = fluid::exchange_scale(me.density + other.density, pair.square, self.softening);
+        let densities = me.density + other.density;
+        let scale = fluid::exchange_scale(densities, pair.square, self.softening);
         let pressure = pair.slope * (me.load + other.load);
         let mass = other.mass();
-        let (way, exchange) = self.viscous.force(self.viscosity, jump, pair, [pair.slope, scale]);
+        let factors = [pair.slope, densities, scale];
+        let (way, exchange) = self.viscous.force(self.viscosity, jump, pair, factors);
         for i in 0..D {
             sum[i] += (way[i] * exchange - pair.separation[i] * pressure) * mass;
         }
@@ -321,7 +313,7 @@ pub struct RateConstants {
     pub diffusivity: f64,
 }
 
-/// The rates of the pressure, CTVF (19), (23), (26), theory (21): `CORRECTS` says whether the
+/// The rates of the pressure, CTVF (23), (26), theory (21): `CORRECTS` says whether the
 /// deviation carries it, `MOVES` whether the divergence is that of the transport velocity, `FALLS`
 /// whether there are body forces. Beside a side stands half of the body force in m/s^2, which is
 /// read of the particle itself only.
@@ -370,7 +362,7 @@ impl<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool>
         sums.divergence -= dot(&flow, &pair.separation) * slope;
         let jump = other.pressure - me.pressure;
         if CORRECTS {
-            sums.pressure_transport += dot(&other.deviation, &pair.separation) * slope * jump;
+            sums.pressure_transport += dot(&me.deviation, &pair.separation) * slope * jump;
         }
         let densities = me.density + other.density;
         let scale = fluid::exchange_scale(densities, pair.square, self.0.softening);

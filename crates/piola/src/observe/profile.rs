@@ -20,6 +20,9 @@ pub struct Line {
     pub values: Interpolated,
     /// Times at which it is recorded.
     pub schedule: Schedule,
+    /// Times of the profiles where each is the mean of what has been recorded since the one before; `None` where each is
+    /// what has been recorded once.
+    pub means: Option<Schedule>,
     /// Columns that are kept at all times.
     pub over_time: Vec<String>,
 }
@@ -34,7 +37,9 @@ impl Line {
 
     /// Numbers of its table in `dimension` dimensions, and of what is kept at `times` times.
     pub fn numbers(&self, dimension: usize, times: usize) -> usize {
-        (self.columns(dimension).len() + self.over_time.len() * times) * self.distances.len()
+        let columns = self.columns(dimension).len();
+        let samples = if self.means.is_some() { columns * times } else { 0 };
+        (columns + samples + self.over_time.len() * times) * self.distances.len()
     }
 }
 
@@ -52,6 +57,9 @@ pub struct ProfileRecorder {
     /// The files so far, and the times of all profiles in s.
     files: Vec<String>,
     times: Vec<f64>,
+    /// What profiles are means of, with the times in s: since the last but one of them, so that a run that goes back has
+    /// what it needs.
+    samples: Vec<(f64, Vec<f64>)>,
     scratch: Vec<f64>,
 }
 
@@ -79,14 +87,40 @@ impl ProfileRecorder {
         }
         shared.profiles.push(profile);
         drop(shared);
-        let (files, times, scratch) = Default::default();
-        Self { line, folder, tables, number, kept, files, times, scratch }
+        let (files, times, samples, scratch) = Default::default();
+        Self { line, folder, tables, number, kept, files, times, samples, scratch }
     }
 
-    fn record(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
+    /// The values of all fields at all points.
+    fn sample(&mut self, moment: &mut Moment) -> Vec<f64> {
         let mut values = Vec::new();
+        self.line.values.record(moment.now, &mut self.scratch, &mut values);
+        values
+    }
+
+    /// Takes a sample, and returns the mean of those since the last profile where one is due.
+    fn mean(&mut self, moment: &mut Moment, ends: &Schedule) -> Option<Vec<f64>> {
+        let (time, values) = (moment.now.time(), self.sample(moment));
+        self.samples.push((time, values));
+        let last = self.times.last().copied().unwrap_or(-1.0);
+        let is_due = ends.next_after(last).is_some_and(|end| time >= end * (1.0 - SAME));
+        if !(is_due || moment.last) {
+            return None;
+        }
+        let since = self.samples.partition_point(|(time, _)| *time <= last);
+        let own = &self.samples[since..];
+        let mut mean = vec![0.0; own[0].1.len()];
+        for (_, values) in own {
+            mean.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        }
+        mean.iter_mut().for_each(|sum| *sum /= own.len() as f64);
+        self.samples.drain(..since);
+        Some(mean)
+    }
+
+    /// Writes a profile of these values.
+    fn record(&mut self, moment: &mut Moment, values: &[f64]) -> Result<(), ObserveError> {
         let interpolated = &self.line.values;
-        interpolated.record(moment.now, &mut self.scratch, &mut values);
         let width = values.len() / self.line.distances.len();
         let places = self.line.distances.iter().zip(&interpolated.places);
         let rows =
@@ -117,13 +151,17 @@ impl ProfileRecorder {
     }
 }
 
+/// Times closer than this fraction are the same.
+const SAME: f64 = 1e-9;
+
 impl Observer for ProfileRecorder {
     fn schedule(&self) -> &Schedule {
         &self.line.schedule
     }
 
     fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
-        let last = self.times.last().copied();
+        let sample = self.samples.last().map(|(time, _)| *time);
+        let last = sample.or(self.times.last().copied());
         let asked_for = match self.line.schedule {
             Schedule::At(_) => self.line.schedule.next_after(last.unwrap_or(-1.0)).is_some(),
             _ => true,
@@ -131,20 +169,25 @@ impl Observer for ProfileRecorder {
         if last == Some(moment.now.time()) || (moment.last && !asked_for) {
             return Ok(());
         }
-        self.record(moment)
+        let values = match self.line.means.clone() {
+            Some(ends) => self.mean(moment, &ends),
+            None => Some(self.sample(moment)),
+        };
+        values.map_or(Ok(()), |values| self.record(moment, &values))
     }
 
     fn save(&self) -> Vec<u8> {
         let tables = self.tables.lock();
         let kept = self.kept.iter().map(|(_, number)| &tables.over_time[*number].values);
         let kept: Vec<&Vec<f64>> = kept.collect();
-        encode(&(&self.files, &self.times, tables.profiles[self.number].numbers(), kept))
+        let profile = tables.profiles[self.number].numbers();
+        encode(&(&self.files, &self.times, profile, kept, &self.samples))
     }
 
     fn restore(&mut self, saved: &[u8]) -> Result<(), Misfit> {
         let what = format!("the line {}", self.line.name);
         let (numbers, values);
-        (self.files, self.times, numbers, values) = decode(saved, &what)?;
+        (self.files, self.times, numbers, values, self.samples) = decode(saved, &what)?;
         let values: Vec<Vec<f64>> = values;
         inside(&self.files)?;
         let length = self.times.len() * self.line.distances.len();
@@ -152,6 +195,13 @@ impl Observer for ProfileRecorder {
             return Err(Misfit(format!("{what} keeps other columns over time, and not in it")));
         }
         let mut tables = self.tables.lock();
+        // Of the columns of a profile all but distance and place.
+        let dimension = self.line.values.places.first().map_or(0, Vec::len);
+        let columns = tables.profiles[self.number].columns().len() - 1 - dimension;
+        let length = columns * self.line.distances.len();
+        if self.samples.iter().any(|(_, values)| values.len() != length) {
+            return Err(Misfit(format!("{what} has samples of other columns, and not in it")));
+        }
         for ((_, number), values) in self.kept.iter().zip(values) {
             let kept = &mut tables.over_time[*number];
             (kept.times, kept.values) = (self.times.clone(), values);
@@ -161,6 +211,7 @@ impl Observer for ProfileRecorder {
     }
 
     fn rewind(&mut self, time: f64) -> Result<(), ObserveError> {
+        self.samples.retain(|(known, _)| *known <= time);
         let kept = self.times.partition_point(|known| *known <= time);
         if kept == self.times.len() {
             return Ok(());

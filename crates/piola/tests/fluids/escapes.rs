@@ -264,6 +264,68 @@ fn both_faces_of_an_edge_hold_where_cells_are_longer_than_high() {
     }
 }
 
+/// A piston that stands on a floor and is drawn back.
+const PISTON: &str = r#"
+version = 1
+title = "A piston is drawn back"
+dimension = 2
+
+[[body]]
+name = "water"
+shape = { kind = "box", min = [0.0, 0.0], max = [0.5, 0.3] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 20.0, viscosity = 0.0 }
+initial = { velocity = ["-1", "0"] }
+
+[[body]]
+name = "piston"
+shape = { kind = "box", min = [-0.2, 0.0], max = [0.0, 0.6] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 20.0, viscosity = 0.0 }
+wall = { slip = "free" }
+
+[[body]]
+name = "floor"
+shape = { kind = "box", min = [-0.9, -0.2], max = [0.7, 0.0] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 20.0, viscosity = 0.0 }
+wall = { slip = "free" }
+
+[scheme]
+kind = "transport_velocity"
+free_surface = true
+
+[[load]]
+kind = "body_force"
+acceleration = ["0", "-20"]
+
+[[boundary]]
+name = "back"
+body = "piston"
+where = { kind = "all" }
+velocity = { x = "-1" }
+
+[time]
+end = 0.15
+
+[output]
+every = 0.15
+table_every = 0.002
+"#;
+
+/// The floor holds where the piston stood what is thrown at it: it has the faces there that it has alone.
+#[test]
+fn a_floor_holds_where_a_wall_has_moved_away() {
+    for fall in [1.0, 7.0] {
+        let finished = run(PISTON, &[&format!("body.water.initial.velocity=['-1', '-{fall}']")]);
+        assert_eq!(finished.summary.outcome, Outcome::Completed);
+        assert!(values(&finished, "step.behind").iter().all(|count| *count == 0.0), "{fall}");
+    }
+}
+
 /// The wall ends where everything does, and has no face there: what falls on its end is told as that, once it is in the
 /// wall and not before.
 #[test]

@@ -161,6 +161,51 @@ fn profiles_come_when_they_are_asked_for() {
 }
 
 #[test]
+fn a_profile_may_be_a_mean_over_time() {
+    // Each sample by a profile of its own, and their means: of 2, 3, 4 ms, and since then, of 5 and 6 ms.
+    let text = CASE.replace("every = 0.004", "every = 0.004\ntable_every = 0.001");
+    let every = text.replace("[0.0, 0.003]", "[0.002, 0.003, 0.004, 0.005, 0.006]");
+    let means = text.replace("[0.0, 0.003]", "[0.004, 0.006]\nmean_over = 0.002");
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name: &str, text: &str| {
+        let out = folder.path().join(name);
+        let finished = run(&parse(text, None), Some(&out));
+        let all = profiles(&out, "across");
+        assert_eq!(*all.last().unwrap(), finished.tables.profiles[1]);
+        all
+    };
+    let (samples, means) = (of("every", &every), of("means", &means));
+    assert_eq!((samples.len(), means.len()), (5, 2));
+    for (mean, own) in means.iter().zip([&samples[..3], &samples[3..]]) {
+        for (place, row) in mean.rows().enumerate() {
+            let rows = own.iter().map(|sample| sample.rows().nth(place).unwrap());
+            for (column, value) in row.iter().enumerate() {
+                let expected = rows.clone().map(|row| row[column]).sum::<f64>() / own.len() as f64;
+                assert!((value - expected).abs() <= 1e-14 * (1.0 + expected.abs()), "{row:?}");
+            }
+        }
+    }
+    // The last step before a profile is due, and after it: a run that goes on there has the same.
+    for steps in [3, 5] {
+        let out = folder.path().join(format!("broken-{steps}"));
+        let case = parse(&text.replace("[0.0, 0.003]", "[0.004, 0.006]\nmean_over = 0.002"), None);
+        let stop = AtomicBool::new(false);
+        let mut session = Session::new(&case).unwrap();
+        session.write_to(&out).unwrap();
+        let mut halt = |it: &Progress| stop.store(it.step >= steps, Ordering::Relaxed);
+        let part = session.run(&stop, &mut halt).unwrap();
+        assert_eq!(part.summary.outcome, Outcome::Interrupted);
+        let mut session = Session::new(&case).unwrap();
+        session.resume_from(&out).unwrap();
+        session.run(&AtomicBool::new(false), &mut |_| {}).unwrap();
+        assert_eq!(profiles(&out, "across"), means, "{steps}");
+    }
+    let text = CASE.replace("points = 21", "points = 21\nmean_over = 1");
+    let problems = case::parse(&text, "case.toml", &LoadOptions::default()).unwrap_err();
+    assert!(problems.to_string().contains("`mean_over` needs the times"), "{problems}");
+}
+
+#[test]
 fn a_place_far_from_all_particles_has_no_value() {
     let text = CASE.replace("to = [0.5, 2.0]", "to = [0.5, 4.0]");
     let finished = run(&parse(&text, None), None);

@@ -7,16 +7,14 @@
 //!
 //! ```text
 //! drho_a/dt = rho_a sum V_b u_ab . grad W_ab + sum V_b (rho_b - rho_a) d_b . grad W_ab + E_a / c^2
-//!   dp_a/dt = rho_a c^2 sum V_b u_ab . grad W_ab + sum V_b (p_b - p_a) d_b . grad W_ab + E_a
+//!   dp_a/dt = rho_a c^2 sum V_b u_ab . grad W_ab + sum V_b (p_b - p_a) d_a . grad W_ab + E_a
 //!   du_a/dt = - sum m_b (p_a / rho_a^2 + p_b / rho_b^2 + Pi_ab) grad W_ab + N_a + g
-//!             + sum m_b (u_a d_a / rho_a + u_b d_b / rho_b) . grad W_ab
-//!             + u_a / rho_a sum V_b (rho d)_ab . grad W_ab
+//!             + sum V_b (u_b - u_a) d_a . grad W_ab
 //! ```
 //!
 //! with the exchange of pressure E, of momentum N and the artificial viscosity Pi of
-//! [`piola_formulas::pairs::fluid`]: theory (20) to (22), which say where the paper departs. They follow from CTVF (12), (19) and (23); the printed (25), (26),
-//! (27) have other signs. The first two lines are theirs with the terms of uhat collected:
-//! `rho_a uhat_ab - (rho d)_ab = rho_a u_ab + (rho_b - rho_a) d_b`, and likewise for p.
+//! [`piola_formulas::pairs::fluid`]: theory (20) to (22), which say how they depart from the paper. They follow from CTVF (12), (18) and (23); the
+//! printed (25), (26), (27) have other signs, and (27) has sums that slow a uniform stream, theory (22).
 //!
 //! E exchanges what pressures are beyond those of a fluid at rest,
 //! `p_b - p_a - (rho_a + rho_b)/2 g . (r_b - r_a)` for the paper's `p_b - p_a`. Inside a fluid that is the
@@ -68,7 +66,7 @@ pub use forces::{Forces, Rates};
 pub(crate) use interface::{Guide, WallSelection};
 pub use levels::{Levels, refined};
 pub use settings::{
-    AtSurface, Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings,
+    AtSurface, Corrections, DensityRule, Divergence, Fluid, Momentum, PressureRule, Settings,
     Shifting, Slip, Viscous,
 };
 pub use solids::{

@@ -34,19 +34,20 @@ pub enum Divergence {
     Transport,
 }
 
-/// The second term of the momentum equation.
+/// What the momentum equation has of the deviation `d = uhat - u`.
 ///
-/// The stress is that of CTVF (27), `div(rho u (x) d) / rho`, which conserves momentum. What belongs
-/// to it is the second term of (18), `- u div(rho d) / rho`; `- u div d` of (19), which (27) takes
-/// instead, belongs to `div(u (x) d)` and differs by `u (d . grad rho) / rho`.
+/// The terms of CTVF (27) are sums over `u_a d_a + u_b d_b`, which leave `2 u_a d_a . sum V_b grad W_ab` of a
+/// uniform velocity. As d goes against that sum, this is a drag, theory (22).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dilatation {
-    /// Left out.
+pub enum Momentum {
+    /// Nothing.
     None,
-    /// `- u div(rho d) / rho`, so that both terms together are `(d . grad) u`.
-    Deviation,
-    /// `- u div uhat`, as CTVF (27) is printed: the same where the flow is incompressible.
+    /// `(d . grad) u`, of differences of velocities.
     Transport,
+    /// `div(rho u (x) d) / rho` of CTVF (27), which conserves momentum.
+    Stress,
+    /// The same with `- u div uhat`, as CTVF (27) is printed.
+    Paper,
 }
 
 /// What makes up for particles that do not move with their velocity.
@@ -56,35 +57,25 @@ pub struct Corrections {
     pub divergence: Divergence,
     /// `(uhat - u) . grad` of what is integrated: of the pressure, and of the density of solids.
     pub transport: bool,
-    /// The divergence of `A = rho u (x) (uhat - u)` in the momentum equation.
-    pub stress: bool,
-    /// The other term of the momentum equation.
-    pub dilatation: Dilatation,
+    /// That of the velocity of fluids.
+    pub momentum: Momentum,
 }
 
 impl Corrections {
-    /// All terms as derived from CTVF (12), (19) and (23).
-    pub const FULL: Self = Self {
-        divergence: Divergence::Momentum,
-        transport: true,
-        stress: true,
-        dilatation: Dilatation::Deviation,
-    };
+    /// `d . grad` of pressure and velocity, as derived from CTVF (12), (18) and (23).
+    pub const FULL: Self =
+        Self { divergence: Divergence::Momentum, transport: true, momentum: Momentum::Transport };
     /// All terms, with the momentum equation as CTVF (27) is printed.
-    pub const PAPER: Self = Self { dilatation: Dilatation::Transport, ..Self::FULL };
+    pub const PAPER: Self = Self { momentum: Momentum::Paper, ..Self::FULL };
     /// No term, u in the divergences.
-    pub const NONE: Self = Self {
-        divergence: Divergence::Momentum,
-        transport: false,
-        stress: false,
-        dilatation: Dilatation::None,
-    };
+    pub const NONE: Self =
+        Self { divergence: Divergence::Momentum, transport: false, momentum: Momentum::None };
     /// No term, uhat in the divergences: the baseline against which the paper's gain shows.
     pub const TRANSPORT_DIVERGENCE: Self = Self { divergence: Divergence::Transport, ..Self::NONE };
     /// The velocity uhat in the divergences, and the stress: GTVF. Solids have no such stress.
-    pub const GENERALISED: Self = Self { stress: true, ..Self::TRANSPORT_DIVERGENCE };
+    pub const GENERALISED: Self = Self { momentum: Momentum::Stress, ..Self::TRANSPORT_DIVERGENCE };
     /// The stress alone, which is what earlier transport-velocity formulations have.
-    pub const STRESS: Self = Self { stress: true, ..Self::NONE };
+    pub const STRESS: Self = Self { momentum: Momentum::Stress, ..Self::NONE };
 
     /// The sets of corrections by their names in a case file.
     pub const ALL: [(&'static str, Self); 6] = [

@@ -75,6 +75,8 @@ pub(super) struct Prepared<const D: usize> {
     lines: Vec<Line>,
     reports: Vec<BodyReport>,
     warnings: Vec<String>,
+    /// Whether some of them are of walls.
+    has_poor_walls: bool,
 }
 
 /// All but the matter of a fluid or of solids, of a fluid at several resolutions as it is nested among the others, with how
@@ -101,6 +103,7 @@ pub(super) fn prepare<const D: usize>(
         vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
     })?);
     let (mut open, mut warnings) = openings::open::<D>(case, settings, &mut particles, support)?;
+    let of_openings = warnings.len();
     let counts = nesting.clone();
     nest(case, (nesting, reserve), &mut open, &mut particles);
     let (faces, shape) = walls::faces(case, &particles, (first_twin, support))?;
@@ -137,6 +140,7 @@ pub(super) fn prepare<const D: usize>(
         warnings.extend(tanks::warnings(case, shape, &particles, (&faces, counts), support));
         warnings.extend(walls::behind_layers(case, &particles, support)?);
     }
+    let has_poor_walls = warnings.len() > of_openings;
     let initial = start::initial(case, &reports, &particles);
     if materials(case).is_none() {
         warnings.extend(compression(&fluid(case)?, &initial));
@@ -157,7 +161,7 @@ pub(super) fn prepare<const D: usize>(
         damping: settings.damping.as_ref().map(|rate| selections::function(rate)),
         particles,
     };
-    Ok(Prepared { input, held, probes, lines, reports, warnings })
+    Ok(Prepared { input, held, probes, lines, reports, warnings, has_poor_walls })
 }
 
 /// Nests a fluid among others of another resolution, with particles in reserve behind all others, each of a whole cell.
@@ -197,7 +201,7 @@ impl<const D: usize> Prepared<D> {
         settings: &model::TransportVelocity,
         matter: M::Input,
     ) -> Result<(TransportVelocity<D, M>, Built), Vec<Problem>> {
-        let Self { input, probes, lines, reports: bodies, mut warnings, .. } = self;
+        let Self { input, probes, lines, reports: bodies, mut warnings, has_poor_walls, .. } = self;
         let place = settings.smoothing_length.place;
         let support = input.kernel.support_radius(input.smoothing_length);
         let full =
@@ -234,7 +238,7 @@ impl<const D: usize> Prepared<D> {
         if materials(case).is_none()
             && !settings.settings.free_surface
             && !is_band
-            && warnings.is_empty()
+            && !has_poor_walls
         {
             warnings.extend(open_end(&scheme, full));
         }

@@ -203,7 +203,8 @@ fn nearest<const D: usize>(
 /// The lines of a case.
 pub(super) fn lines<const D: usize>(case: &Case, particles: &Particles<D>) -> Vec<Line> {
     let line = |probe: &model::Probe| {
-        let model::ProbeKind::Line { from, to, points, fields, times } = &probe.kind else {
+        let model::ProbeKind::Line { from, to, points, fields, times, mean_over } = &probe.kind
+        else {
             return None;
         };
         let length = probe.kind.length()?;
@@ -218,10 +219,20 @@ pub(super) fn lines<const D: usize>(case: &Case, particles: &Particles<D>) -> Ve
             name: probe.name.value.clone(),
             distances: shares.map(|share| share * length).collect(),
             values: interpolated(case, particles, probe.body.as_ref(), places, fields),
-            schedule: match times {
-                Some(times) => Schedule::at(times.clone()),
-                None => Schedule::Every(*case.output.every),
+            schedule: match (times, mean_over) {
+                (Some(times), Some(span)) => {
+                    let every = *case.output.table_every;
+                    let earlier = |end: f64| {
+                        let times = (0..).map(move |number| end - f64::from(number) * every);
+                        let first = (end - span * (1.0 + 1e-9)).max(0.0);
+                        times.take_while(move |time| *time >= first)
+                    };
+                    Schedule::at(times.iter().flat_map(|end| earlier(*end)).collect())
+                }
+                (Some(times), None) => Schedule::at(times.clone()),
+                (None, _) => Schedule::Every(*case.output.every),
             },
+            means: mean_over.and_then(|_| Some(Schedule::at(times.clone()?))),
             over_time: maps_of(case, &probe.name),
         })
     };

@@ -23,7 +23,8 @@ const FIRST: f64 = 0.99;
 
 /// The shape of all walls together, and the faces that their particles are behind: the shortest ways
 /// out of all walls together, inside the box around all bodies, so that the outer faces of a tank do
-/// not count. In a periodic box the box itself is no wall either. Bodies of other systems come away from the walls:
+/// not count. In a periodic box the box itself is no wall either. Walls at rest have the faces that they have without those
+/// that move: a floor under a piston is free when that is drawn back. Bodies of other systems come away from the walls:
 /// their faces are their own, and where they are thin those of one side, by the number of the first
 /// particle that stands for a second side and the support of the kernel in m.
 pub(super) fn faces<const D: usize>(
@@ -79,6 +80,7 @@ pub(super) fn faces<const D: usize>(
         Some((*number, Shape::union(shapes).ok()?))
     });
     let own: Vec<(u32, Shape<D>)> = own.collect();
+    let at_rest = at_rest(case, &fixed);
     crate::parallel::for_each_chunk(&mut faces, |first, rows| {
         for (offset, row) in rows.iter_mut().enumerate() {
             let (x, body) = (&particles.position[first + offset], particles.body[first + offset]);
@@ -98,11 +100,28 @@ pub(super) fn faces<const D: usize>(
                 };
             } else if let (Some(walls), true) = (&walls, is_wall[body as usize]) {
                 let own = own.iter().find(|(number, _)| *number == body);
+                let walls =
+                    at_rest.as_ref().filter(|it| it.0.contains(&body)).map_or(walls, |it| &it.1);
                 *row = own.map_or(walls, |(_, shape)| shape).ways_out(x, layer, &bounds);
             }
         }
     });
     Ok((faces, walls))
+}
+
+/// The walls that do not move, by the numbers of their bodies, and the shape of all of them; none where all are at rest, or
+/// none is.
+fn at_rest<const D: usize>(case: &Case, walls: &[(u32, Shape<D>)]) -> Option<(Vec<u32>, Shape<D>)> {
+    let moves = |number: u32| {
+        case.boundaries.iter().any(|boundary| {
+            let is_own = boundary.body.as_ref().is_some_and(|it| it.value == number as usize);
+            let is_moved = boundary.velocity.iter().any(Option::is_some);
+            is_own && (is_moved || boundary.wave_maker.is_some())
+        })
+    };
+    let still: Vec<_> = walls.iter().filter(|(number, _)| !moves(*number)).cloned().collect();
+    let (numbers, shapes): (Vec<u32>, Vec<_>) = still.into_iter().unzip();
+    (numbers.len() < walls.len()).then(|| Some((numbers, Shape::union(shapes).ok()?))).flatten()
 }
 
 /// A warning of fluid behind the far face of a layer that is a wall, closer than the support of the kernel in m.

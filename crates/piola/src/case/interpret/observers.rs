@@ -221,12 +221,19 @@ impl Reader<'_, '_> {
             Datum::Number(time) => Some(time),
             _ => None,
         });
+        if let (Some(place), false) = (record.key_place("mean_over"), record.has("times")) {
+            let message = "`mean_over` needs the times of the profiles";
+            self.report(
+                Problem::new(place, message, "means up to which times").help("add `times`"),
+            );
+        }
         let line = ProbeKind::Line {
             fields: self.whole_fields(record)?,
             from: record.numbers("from")?,
             to: record.numbers("to")?,
             points: record.whole::<usize>("points")?.value,
             times: record.has("times").then(|| times.collect()),
+            mean_over: record.number("mean_over").map(|span| span.value),
         };
         self.has_direction(record, line)
     }

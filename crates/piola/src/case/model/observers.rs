@@ -113,6 +113,8 @@ pub enum ProbeKind {
         fields: Vec<Located<FieldDescription>>,
         /// Times in s, `None` for those of the particle files.
         times: Option<Vec<f64>>,
+        /// How long before each of these times profiles are means of, in s.
+        mean_over: Option<f64>,
     },
     /// The Taylor test of the tangent of an implicit step.
     Tangent {

@@ -193,8 +193,11 @@ const VISCOUS: Choices = choices(&[
     choice("stress", "the viscous stress, theory (90), which vanishes at a free surface"),
 ]);
 const CORRECTIONS: Choices = choices(&[
-    choice("full", "all terms of CTVF (12), (19), (23)"),
-    choice("paper", "all terms, with the momentum equation as printed in CTVF (27)"),
+    choice("full", "d . grad of pressure and velocity, CTVF (12), (18), (23)"),
+    choice(
+        "paper",
+        "the same for pressure, and the momentum equation as printed in CTVF (27), which slows a uniform stream, theory (22)",
+    ),
     choice("none", "no terms; the divergence is that of the velocity"),
     choice("transport_divergence", "no terms; the divergence is that of the transport velocity"),
     choice("stress", "only the stress of the momentum equation"),

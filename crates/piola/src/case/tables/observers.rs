@@ -292,6 +292,14 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Derived("those of the particle files, and the end"),
                     "times of the profiles",
                 ),
+                key(
+                    "mean_over",
+                    Kind::Number(Interval::POSITIVE),
+                    "s",
+                    Optional,
+                    "time before each of `times`, at most back to the one before, over which a profile is the mean, of samples \
+                     as frequent as the rows of the tables",
+                ),
             ],
         },
         KindSpec {

@@ -5,8 +5,8 @@ use piola_device::{
     through,
 };
 use piola_formulas::pairs::fluid::{
-    FULL, ForceConstants, ForceSum, Forces, MIXED, NONE, RateConstants, RateSum, Rates, Side, Wall,
-    WallForces,
+    FULL, ForceConstants, ForceSum, Forces, NONE, RateConstants, RateSum, Rates, STRESS, Side,
+    Wall, WallForces,
 };
 use piola_formulas::pairs::sums::Density;
 use piola_formulas::pairs::wall::{Extrapolation, Surroundings};
@@ -32,7 +32,7 @@ pub(in super::super) struct FluidPlan<const D: usize> {
     plan: Plan<D>,
     fluid: Fluid,
     /// Whether densities follow from pressures.
-    evolves: bool,
+    follows: bool,
     rate_constants: RateConstants,
     rate_kind: (bool, bool, bool),
     force_constants: ForceConstants,
@@ -59,13 +59,13 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
         if matter.is_damped() {
             return refuse("damping", "run it on the processor");
         }
-        let evolves = common.settings.density == DensityRule::Continuity;
+        let follows = common.settings.density == DensityRule::Continuity;
         let (rate_constants, rate_kind) = matter.rate_law(common);
         let (force_constants, force_kind) = matter.force_law(common);
         Ok(Self {
             plan: system.device_plan()?,
             fluid: *matter.fluid(),
-            evolves,
+            follows,
             rate_constants,
             rate_kind,
             force_constants,
@@ -258,7 +258,7 @@ impl<const D: usize> FluidPlan<D> {
             let powers = pressure_rates.map(|rate| step * mass * self.compliance * mean * rate);
             let terms = self.plan.drift_terms(powers, [&velocity, &deviation], [step, mass]);
             let evolved = pressure + step * pressure_rate;
-            let follows = match self.evolves {
+            let density_after = match self.follows {
                 true => fluid::density(evolved, at_rest, wave_speed),
                 false => density,
             };
@@ -268,7 +268,7 @@ impl<const D: usize> FluidPlan<D> {
                 .into_iter()
                 .copied()
                 .zip(next.into_iter().copied())
-                .chain([(density, follows), (pressure, evolved)]);
+                .chain([(density, density_after), (pressure, evolved)]);
             let terms = terms.into_iter().map(|term| (zero, term));
             next.chain(terms).map(|(still, moved)| if_fluid(wall, moved, still)).collect()
         })
@@ -301,25 +301,22 @@ impl<const D: usize> FluidPlan<D> {
             (FULL, false, true) => of!(FULL, false, true),
             (FULL, true, false) => of!(FULL, true, false),
             (FULL, true, true) => of!(FULL, true, true),
-            (_, false, false) => of!(MIXED, false, false),
-            (_, false, true) => of!(MIXED, false, true),
-            (_, true, false) => of!(MIXED, true, false),
-            (_, true, true) => of!(MIXED, true, true),
+            (_, false, false) => of!(STRESS, false, false),
+            (_, false, true) => of!(STRESS, false, true),
+            (_, true, false) => of!(STRESS, true, false),
+            (_, true, true) => of!(STRESS, true, true),
         };
-        let mut mine = columns.to_vec();
-        mine.extend(self.plan.falls.then_some(through("numbers", "gravity", D)));
-        gather.close(&[], &mine, &[own("force", FORCES * D)], |sums, mut x| {
-            let me: Side<Traced, D> = side(&mut x);
+        let gravity = self.plan.falls.then_some(through("numbers", "gravity", D));
+        gather.close(&[], gravity.as_slice(), &[own("force", FORCES * D)], |sums, mut x| {
             let body_force = match self.plan.falls {
                 true => take(&mut x),
                 false => Vector::<D>::repeat(Traced::from(0.0)),
             };
-            let transport = me.velocity * sums.stretch + sums.carried;
             let rows = [
                 sums.pressure,
                 sums.viscosity,
                 sums.artificial_viscosity,
-                transport,
+                sums.carried,
                 sums.walls,
                 body_force,
                 sums.crowding,

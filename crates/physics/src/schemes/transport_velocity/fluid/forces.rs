@@ -2,13 +2,13 @@
 
 use piola_formulas::fluid;
 use piola_formulas::pairs::fluid::{
-    FULL, ForceConstants, ForceSums, Forces as Law, MIXED, NONE, Wall, WallForces,
+    FULL, ForceConstants, ForceSums, Forces as Law, NONE, STRESS, Wall, WallForces,
 };
 
 use super::{Common, WeaklyCompressible};
 use crate::Vector;
 use crate::operators::{Among, NeighborBlock, Term, add_at, gather};
-use crate::schemes::transport_velocity::{Dilatation, Forces, Shifting, Side};
+use crate::schemes::transport_velocity::{Forces, Momentum, Shifting};
 
 impl<const D: usize> WeaklyCompressible<D> {
     /// Fills `forces` from the sides, without body forces. On wall particles it is the reaction
@@ -25,10 +25,10 @@ impl<const D: usize> WeaklyCompressible<D> {
             (FULL, false, true) => Self::gather_forces::<FULL, false, true>,
             (FULL, true, false) => Self::gather_forces::<FULL, true, false>,
             (FULL, true, true) => Self::gather_forces::<FULL, true, true>,
-            (_, false, false) => Self::gather_forces::<MIXED, false, false>,
-            (_, false, true) => Self::gather_forces::<MIXED, false, true>,
-            (_, true, false) => Self::gather_forces::<MIXED, true, false>,
-            (_, true, true) => Self::gather_forces::<MIXED, true, true>,
+            (_, false, false) => Self::gather_forces::<STRESS, false, false>,
+            (_, false, true) => Self::gather_forces::<STRESS, false, true>,
+            (_, true, false) => Self::gather_forces::<STRESS, true, false>,
+            (_, true, true) => Self::gather_forces::<STRESS, true, true>,
         };
         fill(self, common, constants, &mut forces);
         if !common.walls.is_empty() {
@@ -45,7 +45,6 @@ impl<const D: usize> WeaklyCompressible<D> {
     ) -> (ForceConstants, (u8, bool, bool)) {
         let h = common.support.smoothing_length();
         let corrections = &common.settings.corrections;
-        let one_if = |is_on: bool| f64::from(u8::from(is_on));
         let crowding = match common.settings.shifting {
             Shifting::Sun { .. } => Some(1.0 / common.value_at_spacing(h)),
             _ => None,
@@ -55,15 +54,13 @@ impl<const D: usize> WeaklyCompressible<D> {
             viscosity: self.fluid.viscosity,
             viscous: common.settings.viscous,
             artificial: common.settings.artificial_viscosity * h * self.fluid.wave_speed,
-            stress: one_if(corrections.stress),
-            dilatation: one_if(corrections.dilatation == Dilatation::Deviation),
-            transport: one_if(corrections.dilatation == Dilatation::Transport),
+            dilatation: f64::from(u8::from(corrections.momentum == Momentum::Paper)),
             crowding: crowding.unwrap_or(0.0),
         };
-        let kind = match (corrections.stress, corrections.dilatation) {
-            (false, Dilatation::None) => NONE,
-            (true, Dilatation::Deviation) => FULL,
-            _ => MIXED,
+        let kind = match corrections.momentum {
+            Momentum::None => NONE,
+            Momentum::Transport => FULL,
+            Momentum::Stress | Momentum::Paper => STRESS,
         };
         (constants, (kind, constants.artificial > 0.0, crowding.is_some()))
     }
@@ -78,7 +75,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let (sides, shear) = (common.sides.as_slice(), self.shear.as_slice());
         let fluid = Term { law, source: sides, among: Among::Active };
         let walls = Term { law: WallForces(law), source: (sides, shear), among: Among::Passive };
-        let close = |place: usize, sums: &_, row: &mut _| *row = accelerations(sums, &sides[place]);
+        let close = |_: usize, sums: &_, row: &mut _| *row = accelerations(sums);
         gather(&common.support, &(fluid, walls), forces, |place| common.active(place), close);
     }
 
@@ -112,12 +109,12 @@ impl<const D: usize> WeaklyCompressible<D> {
 }
 
 /// The accelerations of a particle with these sums, without body forces.
-fn accelerations<const D: usize>(sums: &ForceSums<f64, D>, me: &Side<D>) -> Forces<D> {
+fn accelerations<const D: usize>(sums: &ForceSums<f64, D>) -> Forces<D> {
     Forces {
         pressure: sums.pressure,
         viscosity: sums.viscosity,
         artificial_viscosity: sums.artificial_viscosity,
-        transport: me.velocity * sums.stretch + sums.carried,
+        transport: sums.carried,
         walls: sums.walls,
         body_force: Vector::zeros(),
         crowding: sums.crowding,

@@ -15,7 +15,7 @@ use crate::{Vector, parallel};
 
 /// Lag of the mean pressure that buffers take from the fluid, in `h/c`, theory (88): long waves on a lattice are
 /// reflected least with it.
-const LEAD: f64 = 0.5;
+const LAG: f64 = 0.5;
 
 impl<const D: usize> WeaklyCompressible<D> {
     /// Completes the sides of buffers from those of the fluid around them, at a time in s, theory (86) to (88).
@@ -123,7 +123,7 @@ impl<const D: usize> WeaklyCompressible<D> {
                 own.velocity[row] += boundary.normal * (mean.gain() * share);
             }
         }
-        let lead = LEAD * common.support.smoothing_length() / self.fluid.wave_speed;
+        let lag = LAG * common.support.smoothing_length() / self.fluid.wave_speed;
         let (_, kept) = Kept::of(common, state);
         for ((mean, boundary), kept) in
             open.means.iter().zip(&open.boundaries.all).zip(kept.each.chunks_exact_mut(KEPT))
@@ -131,8 +131,8 @@ impl<const D: usize> WeaklyCompressible<D> {
             let share = follows(step, boundary.relaxation);
             kept[0] = mean.slow + mean.sound() * share;
             kept[3] = mean.stream + mean.gain() * share;
-            // What grows evenly is late by `lead`, whatever the step is up to that.
-            kept[LATE_PRESSURE] = mean.late + mean.lead() * (step / lead).min(1.0);
+            // What grows evenly is late by `lag`, whatever the step is up to that.
+            kept[LATE_PRESSURE] = mean.late + mean.lead() * (step / lag).min(1.0);
         }
     }
 
