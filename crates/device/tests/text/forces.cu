@@ -1,4 +1,4 @@
-/* 66 operations */
+/* 63 operations */
 LAW void forces_pair_0(real way_0, real way_1, real slot_a, real slot_b, real my_side_0, real my_side_1, real my_side_2, real my_side_3, real my_side_4, real my_side_5, real my_side_6, real my_side_7, real its_side_0, real its_side_1, real its_side_2, real its_side_3, real its_side_4, real its_side_5, real its_side_6, real its_side_7, real s_pressure_x, real s_pressure_y, real s_viscosity_x, real s_viscosity_y, real s_artificial_viscosity_x, real s_artificial_viscosity_y, real s_walls_x, real s_walls_y, real s_carried_x, real s_carried_y, real s_volume_x, real s_volume_y, real s_crowding_x, real s_crowding_y, real *d_pressure_x, real *d_pressure_y, real *d_viscosity_x, real *d_viscosity_y, real *d_artificial_viscosity_x, real *d_artificial_viscosity_y, real *d_walls_x, real *d_walls_y, real *d_carried_x, real *d_carried_y, real *d_volume_x, real *d_volume_y, real *d_crowding_x, real *d_crowding_y)
 {
     const real t35 = way_0 * way_0;
@@ -29,11 +29,8 @@ LAW void forces_pair_0(real way_0, real way_1, real slot_a, real slot_b, real my
     const real t68 = my_side_0 - its_side_0;
     const real t69 = my_side_1 - its_side_1;
     const real t70 = my_side_4 + its_side_4;
-    const real t72 = t37 + 0.0001;
-    const real t73 = t72 * t70;
-    const real t74 = 1.0 / t73;
-    const real t75 = t37 * t67;
-    const real t76 = t75 * t74;
+    const real t75 = 1.0 / t70;
+    const real t76 = t67 * t75;
     const real t78 = t76 * 0.04;
     const real t79 = my_side_6 + its_side_6;
     const real t80 = t67 * t79;

@@ -1,4 +1,4 @@
-/* 66 operations */
+/* 63 operations */
 LAW void forces_pair_0(work way_0, work way_1, work slot_a, work slot_b, work my_side_0, work my_side_1, work my_side_2, work my_side_3, work my_side_4, work my_side_5, work my_side_6, work my_side_7, work its_side_0, work its_side_1, work its_side_2, work its_side_3, work its_side_4, work its_side_5, work its_side_6, work its_side_7, work s_pressure_x, work s_pressure_y, work s_viscosity_x, work s_viscosity_y, work s_artificial_viscosity_x, work s_artificial_viscosity_y, work s_walls_x, work s_walls_y, work s_carried_x, work s_carried_y, work s_volume_x, work s_volume_y, work s_crowding_x, work s_crowding_y, work *d_pressure_x, work *d_pressure_y, work *d_viscosity_x, work *d_viscosity_y, work *d_artificial_viscosity_x, work *d_artificial_viscosity_y, work *d_walls_x, work *d_walls_y, work *d_carried_x, work *d_carried_y, work *d_volume_x, work *d_volume_y, work *d_crowding_x, work *d_crowding_y)
 {
     const work t35 = way_0 * way_0;
@@ -29,11 +29,8 @@ LAW void forces_pair_0(work way_0, work way_1, work slot_a, work slot_b, work my
     const work t68 = my_side_0 - its_side_0;
     const work t69 = my_side_1 - its_side_1;
     const work t70 = my_side_4 + its_side_4;
-    const work t72 = t37 + 0.0001f;
-    const work t73 = t72 * t70;
-    const work t74 = 1.0f / t73;
-    const work t75 = t37 * t67;
-    const work t76 = t75 * t74;
+    const work t75 = 1.0f / t70;
+    const work t76 = t67 * t75;
     const work t78 = t76 * 0.04f;
     const work t79 = my_side_6 + its_side_6;
     const work t80 = t67 * t79;
