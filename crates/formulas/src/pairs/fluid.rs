@@ -115,7 +115,7 @@ pub struct Forces<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, co
 );
 
 record! {
-    /// What [`Forces`] sums, in m/s^2 but for the last three.
+    /// What [`Forces`] sums, in m/s^2 but for the last two.
     pub struct ForceSums<D> in ForceSum {
         /// `- sum m_b (p_a / rho_a^2 + p_b / rho_b^2) grad W_ab` among the fluid.
         pub pressure: Components<D>,

@@ -121,13 +121,15 @@ impl PageCase {
                 let finished = runs.iter().filter_map(|(.., run)| run.finished());
                 let work = finished.map(|run| run.summary.evaluations).sum();
                 let is_left = runs.iter().any(|(.., run)| matches!(run, Attempt::Left));
-                let has_failed = runs.iter().any(|(.., run)| matches!(run, Attempt::Failed));
+                // Of a case that cannot be read there is no run.
+                let has_failed = runs.len() < row.runs.len()
+                    || runs.iter().any(|(.., run)| matches!(run, Attempt::Failed));
                 let sums: Vec<String> =
                     runs.iter().map(|(_, case, _)| case.fingerprint()).collect();
                 let mut new = Row::new(row, setting.case.level, work, sums.join(" "));
                 new.is_interrupted = !row.is_long && is_left;
-                new.has_no_run = row.is_long && has_failed && !is_left;
-                if row.is_long && !is_left {
+                new.has_no_run = row.is_long && has_failed;
+                if row.is_long && (has_failed || !is_left) {
                     new.date = Some(today.to_owned());
                 }
                 rows.retain(|other| {

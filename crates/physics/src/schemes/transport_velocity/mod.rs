@@ -6,7 +6,7 @@
 //! `V = m / rho` and the kernel gradient `grad W_ab` at a, the equations solved are
 //!
 //! ```text
-//! drho_a/dt = rho_a sum V_b u_ab . grad W_ab + sum V_b (rho_b - rho_a) d_b . grad W_ab + E_a / c^2
+//! drho_a/dt = rho_a sum V_b u_ab . grad W_ab + sum V_b (rho_b - rho_a) d_a . grad W_ab + E_a / c^2
 //!   dp_a/dt = rho_a c^2 sum V_b u_ab . grad W_ab + sum V_b (p_b - p_a) d_a . grad W_ab + E_a
 //!   du_a/dt = - sum m_b (p_a / rho_a^2 + p_b / rho_b^2 + Pi_ab) grad W_ab + N_a + g
 //!             + sum V_b (u_b - u_a) d_a . grad W_ab

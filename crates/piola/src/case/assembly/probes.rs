@@ -224,8 +224,9 @@ pub(super) fn lines<const D: usize>(case: &Case, particles: &Particles<D>) -> Ve
                     let every = *case.output.table_every;
                     let earlier = |end: f64| {
                         let times = (0..).map(move |number| end - f64::from(number) * every);
-                        let first = (end - span * (1.0 + 1e-9)).max(0.0);
-                        times.take_while(move |time| *time >= first)
+                        let first = (end - span).max(0.0) - 1e-9 * every;
+                        let snapped = |time: f64| if time < 1e-9 * every { 0.0 } else { time };
+                        times.take_while(move |time| *time >= first).map(snapped)
                     };
                     Schedule::at(times.iter().flat_map(|end| earlier(*end)).collect())
                 }
