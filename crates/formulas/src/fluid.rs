@@ -50,7 +50,8 @@ pub fn diffusion<T: Number>(diffusivity: f64, square: T, slope: T, scale: T) -> 
 }
 
 /// Viscosity between two particles, with the sum of their densities: `4 nu (r_ab . grad W_ab) / (r_ab^2 (rho_a + rho_b))`,
-/// which is finite without the softening of CTVF (27), theory (23). Times `m_b u_ab` it is the acceleration of a by `div(rho nu grad u) / rho`.
+/// which is finite without the softening of CTVF (27), theory (23). Times `m_b u_ab` it is the acceleration of a by
+/// `div(rho nu grad u) / rho`.
 #[inline(always)]
 pub fn viscous_drag<T: Number>(viscosity: f64, slope: T, densities: T) -> T {
     slope * densities.recip() * (4.0 * viscosity)

@@ -191,6 +191,14 @@ fn a_case_that_takes_long_runs_only_if_asked() {
     assert_contains(&stdout, &told);
     assert!(!stdout.contains("--long"), "{stdout}");
     assert_eq!(dated(), known);
+    // One that is compared with one that was not asked for fails, too.
+    let other = "\n[[variant]]\nname = \"other\"\nlong = true\nset = [\"time.max_steps=3\"]\n\n[[check]]\n\
+                 quantity = \"tip.displacement.x\"\nequal_to = \"other\"\ntolerance = 0\n\
+                 source = \"itself\"\nwhen = \"case\"\n";
+    let both = BAR.replace("version = 1", "version = 1\nlong = true") + other;
+    place.write("bar/case.toml", both);
+    let (stdout, _) = place.run("verify bar --full --long=base --keep kept", 1);
+    assert_contains(&stdout, &["1 passed, 2 failed"]);
 }
 
 #[test]

@@ -34,6 +34,11 @@ impl Schedule {
         }
     }
 
+    /// Whether `now` is the first due time after `time`, or past it.
+    pub fn is_due(&self, time: f64, now: f64) -> bool {
+        self.next_after(time).is_some_and(|due| now >= due * (1.0 - SAME))
+    }
+
     /// Whether the start, at time 0, is due.
     pub fn includes_start(&self) -> bool {
         match self {
@@ -67,5 +72,7 @@ mod tests {
         assert_eq!(schedule.next_after(0.0), Some(0.25));
         assert_eq!(schedule.next_after(0.25), Some(0.5));
         assert_eq!(schedule.next_after(0.5), None);
+        assert!(schedule.is_due(0.0, 0.25) && schedule.is_due(0.25, 0.6));
+        assert!(!schedule.is_due(0.0, 0.2) && !schedule.is_due(0.5, 0.9));
     }
 }

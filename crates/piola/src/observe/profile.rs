@@ -57,8 +57,8 @@ pub struct ProfileRecorder {
     /// The files so far, and the times of all profiles in s.
     files: Vec<String>,
     times: Vec<f64>,
-    /// What profiles are means of, with the times in s: since the last but one of them, so that a run that goes back has
-    /// what it needs.
+    /// What profiles are means of, with the times in s: since the last but one of them, so that a run that goes back past one
+    /// makes it again of the same.
     samples: Vec<(f64, Vec<f64>)>,
     scratch: Vec<f64>,
 }
@@ -99,14 +99,16 @@ impl ProfileRecorder {
     }
 
     /// Takes a sample, and returns the mean of those since the last profile where one is due.
-    fn mean(&mut self, moment: &mut Moment, ends: &Schedule) -> Option<Vec<f64>> {
-        let (time, values) = (moment.now.time(), self.sample(moment));
-        self.samples.push((time, values));
-        let last = self.times.last().copied().unwrap_or(-1.0);
-        let is_due = ends.next_after(last).is_some_and(|end| time >= end * (1.0 - SAME));
-        if !(is_due || moment.last) {
+    fn mean(&mut self, moment: &mut Moment, is_due: bool) -> Option<Vec<f64>> {
+        let time = moment.now.time();
+        if self.samples.last().is_none_or(|(known, _)| *known != time) {
+            let values = self.sample(moment);
+            self.samples.push((time, values));
+        }
+        if !is_due {
             return None;
         }
+        let last = self.times.last().copied().unwrap_or(-1.0);
         let since = self.samples.partition_point(|(time, _)| *time <= last);
         let own = &self.samples[since..];
         let mut mean = vec![0.0; own[0].1.len()];
@@ -151,26 +153,25 @@ impl ProfileRecorder {
     }
 }
 
-/// Times closer than this fraction are the same.
-const SAME: f64 = 1e-9;
-
 impl Observer for ProfileRecorder {
     fn schedule(&self) -> &Schedule {
         &self.line.schedule
     }
 
     fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
-        let sample = self.samples.last().map(|(time, _)| *time);
-        let last = sample.or(self.times.last().copied());
+        let (now, written) = (moment.now.time(), self.times.last().copied());
+        let last = self.samples.last().map(|(time, _)| *time).or(written);
         let asked_for = match self.line.schedule {
             Schedule::At(_) => self.line.schedule.next_after(last.unwrap_or(-1.0)).is_some(),
             _ => true,
         };
-        if last == Some(moment.now.time()) || (moment.last && !asked_for) {
+        if written == Some(now) || (moment.last && !asked_for) {
             return Ok(());
         }
-        let values = match self.line.means.clone() {
-            Some(ends) => self.mean(moment, &ends),
+        let ends = self.line.means.as_ref();
+        let is_due = ends.map(|ends| moment.last || ends.is_due(written.unwrap_or(-1.0), now));
+        let values = match is_due {
+            Some(is_due) => self.mean(moment, is_due),
             None => Some(self.sample(moment)),
         };
         values.map_or(Ok(()), |values| self.record(moment, &values))

@@ -311,6 +311,13 @@ velocity = { x = "-1" }
 [time]
 end = 0.15
 
+[[probe]]
+name = "left"
+kind = "extremum"
+body = "water"
+field = "position.x"
+of = "smallest"
+
 [output]
 every = 0.15
 table_every = 0.002
@@ -323,6 +330,8 @@ fn a_floor_holds_where_a_wall_has_moved_away() {
         let finished = run(PISTON, &[&format!("body.water.initial.velocity=['-1', '-{fall}']")]);
         assert_eq!(finished.summary.outcome, Outcome::Completed);
         assert!(values(&finished, "step.behind").iter().all(|count| *count == 0.0), "{fall}");
+        // Water stands on what the piston has left.
+        assert!(*values(&finished, "left.position.x").last().expect("rows") < -0.1, "{fall}");
     }
 }
 

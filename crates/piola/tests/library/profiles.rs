@@ -160,6 +160,17 @@ fn profiles_come_when_they_are_asked_for() {
     assert!(page.contains("data-x-name=\"distance\"") && page.contains("across.velocity.y"));
 }
 
+fn assert_mean(mean: &Table, samples: &[Table]) {
+    for (place, row) in mean.rows().enumerate() {
+        let rows = samples.iter().map(|sample| sample.rows().nth(place).unwrap());
+        for (column, value) in row.iter().enumerate() {
+            let expected = rows.clone().map(|row| row[column]).sum::<f64>() / samples.len() as f64;
+            let is_same = (value - expected).abs() <= 1e-14 * (1.0 + expected.abs());
+            assert!(is_same || value.is_nan() && expected.is_nan(), "{value} for {expected}");
+        }
+    }
+}
+
 #[test]
 fn a_profile_may_be_a_mean_over_time() {
     // Each sample by a profile of its own, and their means: of 2, 3, 4 ms, and since then, of 5 and 6 ms.
@@ -177,13 +188,7 @@ fn a_profile_may_be_a_mean_over_time() {
     let (samples, means) = (of("every", &every), of("means", &means));
     assert_eq!((samples.len(), means.len()), (5, 2));
     for (mean, own) in means.iter().zip([&samples[..3], &samples[3..]]) {
-        for (place, row) in mean.rows().enumerate() {
-            let rows = own.iter().map(|sample| sample.rows().nth(place).unwrap());
-            for (column, value) in row.iter().enumerate() {
-                let expected = rows.clone().map(|row| row[column]).sum::<f64>() / own.len() as f64;
-                assert!((value - expected).abs() <= 1e-14 * (1.0 + expected.abs()), "{row:?}");
-            }
-        }
+        assert_mean(mean, own);
     }
     // The last step before a profile is due, and after it: a run that goes on there has the same.
     for steps in [3, 5] {
@@ -260,11 +265,23 @@ fn a_run_that_goes_back_or_is_resumed_keeps_its_profiles() {
     let dam = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/upwind/dam-break/case.toml");
     let line = "\n[[probe]]\nname = \"level\"\nkind = \"line\"\nfrom = [0.0, 0.1]\nto = [1.5, 0.1]\n\
                 fields = [\"pressure\"]\n";
-    let text = fs::read_to_string(dam).unwrap() + line;
+    // Means, and what they are of.
+    let numbers =
+        |every: usize| (1..=80 / every).map(move |it| format!("{}", (it * every) as f64 / 100.0));
+    let times = |every| numbers(every).collect::<Vec<String>>().join(", ");
+    let samples = line.replace("level", "samples") + &format!("times = [{}]\n", times(1));
+    let means =
+        line.replace("level", "means") + &format!("times = [{}]\nmean_over = 0.03\n", times(4));
+    let text = fs::read_to_string(dam).unwrap() + line + &samples + &means;
     let file = folder.path().join("case.toml");
     fs::write(&file, text).unwrap();
     // Too large a step: it fails, goes back and on with half of it.
-    let set = ["body.water.spacing=0.1", "time.cfl=2", "time.on_failure='retry'"];
+    let set = [
+        "body.water.spacing=0.1",
+        "time.cfl=2",
+        "time.on_failure='retry'",
+        "output.table_every=0.01",
+    ];
     let overrides = set.map(str::to_owned).to_vec();
     let options = LoadOptions { overrides, level: Level::Coarse, ..LoadOptions::default() };
     let case = case::load(&file, &options).unwrap_or_else(|problems| panic!("{problems}"));
@@ -274,7 +291,15 @@ fn a_run_that_goes_back_or_is_resumed_keeps_its_profiles() {
     let frames = fs::read_dir(out.join("particles")).unwrap().count();
     assert_eq!(profiles(&out, "level").len(), frames);
     assert_eq!(profiles(&out, "level").last(), whole.tables.profiles.first());
+    let (samples, means) = (profiles(&out, "samples"), profiles(&out, "means"));
     let retry = &whole.summary.retries[0];
+    // It goes back past a mean, into the time that it is of.
+    let is_between = |time: f64| retry.back_to < time && time < retry.time;
+    assert!((1..=20).any(|number| is_between(0.04 * f64::from(number))), "{retry:?}");
+    assert_eq!((samples.len(), means.len()), (80, 20));
+    for (mean, own) in means.iter().zip(samples.chunks_exact(4)) {
+        assert_mean(mean, own);
+    }
     let stop = AtomicBool::new(false);
     let mut until = |progress: &Progress| {
         stop.store(progress.step + 2 >= retry.step, Ordering::Relaxed);
@@ -289,5 +314,7 @@ fn a_run_that_goes_back_or_is_resumed_keeps_its_profiles() {
     session.resume_from(&broken).unwrap();
     let last = session.run(&stop, &mut |_| {}).unwrap();
     assert_eq!(last.tables, whole.tables);
-    assert_eq!(profiles(&broken, "level"), profiles(&out, "level"));
+    for line in ["level", "samples", "means"] {
+        assert_eq!(profiles(&broken, line), profiles(&out, line));
+    }
 }

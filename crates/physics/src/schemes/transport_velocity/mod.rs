@@ -13,8 +13,9 @@
 //! ```
 //!
 //! with the exchange of pressure E, of momentum N and the artificial viscosity Pi of
-//! [`piola_formulas::pairs::fluid`]: theory (20) to (22), which say how they depart from the paper. They follow from CTVF (12), (18) and (23); the
-//! printed (25), (26), (27) have other signs, and (27) has sums that slow a uniform stream, theory (22).
+//! [`piola_formulas::pairs::fluid`]: theory (20) to (22), which say how they depart from the paper. They follow from
+//! CTVF (12), (18) and (23); the printed (25), (26), (27) have other signs, and (27) has sums that slow a uniform stream,
+//! theory (22).
 //!
 //! E exchanges what pressures are beyond those of a fluid at rest,
 //! `p_b - p_a - (rho_a + rho_b)/2 g . (r_b - r_a)` for the paper's `p_b - p_a`. Inside a fluid that is the

@@ -36,8 +36,8 @@ pub enum Divergence {
 
 /// What the momentum equation has of the deviation `d = uhat - u`.
 ///
-/// The terms of CTVF (27) are sums over `u_a d_a + u_b d_b`, which leave `2 u_a d_a . sum V_b grad W_ab` of a
-/// uniform velocity. As d goes against that sum, this is a drag, theory (22).
+/// The two terms of CTVF (27) leave `2 u_a d_a . sum V_b grad W_ab` of a uniform velocity, where the density is
+/// uniform, too. As d goes against that sum, this is a drag, theory (22). The pairs of the first alone conserve momentum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Momentum {
     /// Nothing.
@@ -46,7 +46,7 @@ pub enum Momentum {
     Transport,
     /// `div(rho u (x) d) / rho` of CTVF (27), which conserves momentum.
     Stress,
-    /// The same with `- u div uhat`, as CTVF (27) is printed.
+    /// The same with `- u div uhat`, as CTVF (27) is printed but for the softening of its viscosity.
     Paper,
 }
 

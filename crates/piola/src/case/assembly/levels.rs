@@ -145,10 +145,7 @@ fn check(case: &Case, settings: &model::TransportVelocity) -> Result<(), Vec<Pro
         );
         return refuse(&message, "use expressions or functions, or remove `refine`");
     }
-    let moves = |it: &&model::Boundary| {
-        it.wave_maker.is_some() || it.velocity.iter().any(|component| component.is_some())
-    };
-    if let Some(boundary) = case.boundaries.iter().find(moves) {
+    if let Some(boundary) = case.boundaries.iter().find(|boundary| boundary.moves()) {
         let message = format!(
             "walls stand still in a fluid with regions of finer spacing, and `{}` moves some",
             *boundary.name

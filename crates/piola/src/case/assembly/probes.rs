@@ -223,8 +223,10 @@ pub(super) fn lines<const D: usize>(case: &Case, particles: &Particles<D>) -> Ve
                 (Some(times), Some(span)) => {
                     let every = *case.output.table_every;
                     let earlier = |end: f64| {
+                        let before = times.iter().copied().filter(|time| *time < end);
+                        let last = before.fold(0.0, f64::max);
+                        let first = (end - span).max(last) - 1e-9 * every;
                         let times = (0..).map(move |number| end - f64::from(number) * every);
-                        let first = (end - span).max(0.0) - 1e-9 * every;
                         let snapped = |time: f64| if time < 1e-9 * every { 0.0 } else { time };
                         times.take_while(move |time| *time >= first).map(snapped)
                     };

@@ -24,7 +24,8 @@ const FIRST: f64 = 0.99;
 /// The shape of all walls together, and the faces that their particles are behind: the shortest ways
 /// out of all walls together, inside the box around all bodies, so that the outer faces of a tank do
 /// not count. In a periodic box the box itself is no wall either. Walls at rest have the faces that they have without those
-/// that move: a floor under a piston is free when that is drawn back. Bodies of other systems come away from the walls:
+/// that move: a floor under a piston is free when that is drawn back. Those that move have the faces that they have at the
+/// start, so that the end on which one stands has none. Bodies of other systems come away from the walls:
 /// their faces are their own, and where they are thin those of one side, by the number of the first
 /// particle that stands for a second side and the support of the kernel in m.
 pub(super) fn faces<const D: usize>(
@@ -73,14 +74,16 @@ pub(super) fn faces<const D: usize>(
     let walls = Shape::union(shapes.collect()).ok();
     // A layer holds what is in front of the boundary that it follows, and reaches out of the bounds behind that.
     let extent = (bounds.1 - bounds.0).norm();
-    let own = fixed.iter().enumerate().filter_map(|(index, (number, shape))| {
-        let thick = shape.thickened(extent);
-        let mut shapes: Vec<_> = fixed.iter().map(|(_, shape)| shape.clone()).collect();
-        (thick != *shape).then(|| shapes[index] = thick)?;
-        Some((*number, Shape::union(shapes).ok()?))
+    let moves: Vec<bool> = fixed.iter().map(|(number, _)| moves(case, *number)).collect();
+    let seen = fixed.iter().enumerate().filter_map(|(index, (number, _))| {
+        let others = fixed.iter().enumerate().filter(|(other, _)| moves[index] || !moves[*other]);
+        let shapes = others.map(|(other, (_, shape))| match other == index {
+            true => shape.thickened(extent),
+            false => shape.clone(),
+        });
+        Some((*number, Shape::union(shapes.collect()).ok()?))
     });
-    let own: Vec<(u32, Shape<D>)> = own.collect();
-    let at_rest = at_rest(case, &fixed);
+    let seen: Vec<(u32, Shape<D>)> = seen.collect();
     crate::parallel::for_each_chunk(&mut faces, |first, rows| {
         for (offset, row) in rows.iter_mut().enumerate() {
             let (x, body) = (&particles.position[first + offset], particles.body[first + offset]);
@@ -98,30 +101,19 @@ pub(super) fn faces<const D: usize>(
                     }
                     None => shape.ways_out(x, layer, &bounds),
                 };
-            } else if let (Some(walls), true) = (&walls, is_wall[body as usize]) {
-                let own = own.iter().find(|(number, _)| *number == body);
-                let walls =
-                    at_rest.as_ref().filter(|it| it.0.contains(&body)).map_or(walls, |it| &it.1);
-                *row = own.map_or(walls, |(_, shape)| shape).ways_out(x, layer, &bounds);
+            } else if let Some((_, shape)) = seen.iter().find(|(number, _)| *number == body) {
+                *row = shape.ways_out(x, layer, &bounds);
             }
         }
     });
     Ok((faces, walls))
 }
 
-/// The walls that do not move, by the numbers of their bodies, and the shape of all of them; none where all are at rest, or
-/// none is.
-fn at_rest<const D: usize>(case: &Case, walls: &[(u32, Shape<D>)]) -> Option<(Vec<u32>, Shape<D>)> {
-    let moves = |number: u32| {
-        case.boundaries.iter().any(|boundary| {
-            let is_own = boundary.body.as_ref().is_some_and(|it| it.value == number as usize);
-            let is_moved = boundary.velocity.iter().any(Option::is_some);
-            is_own && (is_moved || boundary.wave_maker.is_some())
-        })
-    };
-    let still: Vec<_> = walls.iter().filter(|(number, _)| !moves(*number)).cloned().collect();
-    let (numbers, shapes): (Vec<u32>, Vec<_>) = still.into_iter().unzip();
-    (numbers.len() < walls.len()).then(|| Some((numbers, Shape::union(shapes).ok()?))).flatten()
+/// Whether something prescribes how the body of this number moves.
+fn moves(case: &Case, number: u32) -> bool {
+    let is_its =
+        |it: &&model::Boundary| it.body.as_ref().is_none_or(|it| it.value == number as usize);
+    case.boundaries.iter().filter(is_its).any(model::Boundary::moves)
 }
 
 /// A warning of fluid behind the far face of a layer that is a wall, closer than the support of the kernel in m.

@@ -98,6 +98,13 @@ pub struct Boundary {
     pub tied: Vec<Located<usize>>,
 }
 
+impl Boundary {
+    /// Whether it prescribes how particles move.
+    pub fn moves(&self) -> bool {
+        self.wave_maker.is_some() || self.velocity.iter().any(Option::is_some)
+    }
+}
+
 /// What is prescribed of the rotation of a rigid body, and the point that its velocity refers to.
 #[derive(Clone, Debug, Default)]
 pub struct Turning {

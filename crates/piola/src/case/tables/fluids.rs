@@ -196,7 +196,7 @@ const CORRECTIONS: Choices = choices(&[
     choice("full", "d . grad of pressure and velocity, CTVF (12), (18), (23)"),
     choice(
         "paper",
-        "the same for pressure, and the momentum equation as printed in CTVF (27), which slows a uniform stream, theory (22)",
+        "the same for pressure, and the momentum equation of CTVF (27) but for its softening, which slows a uniform stream, theory (22)",
     ),
     choice("none", "no terms; the divergence is that of the velocity"),
     choice("transport_divergence", "no terms; the divergence is that of the transport velocity"),
