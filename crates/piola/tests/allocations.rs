@@ -244,13 +244,14 @@ fn grown(session: &mut Session, steps: u32) -> i64 {
 }
 
 /// What a run holds between its outputs does not grow with its steps: the four cases whose energy is checked over a
-/// million steps, each for a tenth of that. The arrays of the neighbours of water are as long as they happen to be.
+/// million steps, each for a tenth of that. The arrays of the neighbours of water are as long as they happen to be, and grow
+/// until the lattice of the start has fallen into disorder.
 #[test]
 fn over_many_steps_memory_does_not_grow() {
     let held = |(name, most): (&str, i64)| {
         let mut session = session(name, Some("million"), &[]);
-        grown(&mut session, 1000);
-        let grown = grown(&mut session, 100_000);
+        grown(&mut session, 20_000);
+        let grown = grown(&mut session, 80_000);
         assert!(grown <= most, "{name}: {grown} bytes more");
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");

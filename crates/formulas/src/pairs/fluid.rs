@@ -104,6 +104,8 @@ pub struct ForceConstants {
     pub dilatation: f64,
     /// `1 / W(dx)` in m^D.
     pub crowding: f64,
+    /// `1 / rho_0` in m^3/kg.
+    pub specific_volume: f64,
 }
 
 /// The accelerations of a fluid, CTVF (18), (23), (27), (28), (35), theory (22) to (24): `CORRECTS` is one of
@@ -115,7 +117,7 @@ pub struct Forces<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, co
 );
 
 record! {
-    /// What [`Forces`] sums, in m/s^2 but for the last two.
+    /// What [`Forces`] sums, in m/s^2 but for the last three.
     pub struct ForceSums<D> in ForceSum {
         /// `- sum m_b (p_a / rho_a^2 + p_b / rho_b^2) grad W_ab` among the fluid.
         pub pressure: Components<D>,
@@ -131,6 +133,8 @@ record! {
         pub volume: Components<D>,
         /// `sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab` of CTVF (35) in 1/m.
         pub crowding: Components<D>,
+        /// `sum m_b W_ab` in kg/m^3; a wall particle counts with the mass of fluid of its density.
+        pub filling: One,
     }
 }
 
@@ -139,12 +143,12 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
 {
     const NEEDS: Needs = if CROWDING { Needs::Both } else { Needs::Slope };
 
-    /// Adds what the corrections and the shifting need.
+    /// Adds what the corrections and the shifting need, of a neighbour that fills its place with a `mass` in kg.
     #[inline(always)]
     fn carry<T: Number>(
         &self,
         me: &Side<T, D>,
-        other: &Side<T, D>,
+        (other, mass): (&Side<T, D>, T),
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
     ) {
@@ -167,6 +171,7 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
             }
         }
         if CROWDING {
+            sums.filling += mass * pair.value;
             let factor = fluid::repulsion(pair.value * self.0.crowding);
             for i in 0..D {
                 let area = pair.separation[i] * slope;
@@ -213,7 +218,7 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
                 sums.artificial_viscosity[i] -= pair.separation[i] * push;
             }
         }
-        self.carry(me, other, pair, sums);
+        self.carry(me, (other, other.mass()), pair, sums);
     }
 }
 
@@ -242,7 +247,9 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
         let wall = Wall::of(&self.0.0);
         let jump = difference(&me.velocity, shear);
         wall.push([me, other], &jump, pair, &mut sums.walls);
-        self.0.carry(me, other, pair, sums);
+        // Its mass is that at rest, whatever the pressure.
+        let mass = other.mass() * other.density * self.0.0.specific_volume;
+        self.0.carry(me, (other, mass), pair, sums);
     }
 }
 

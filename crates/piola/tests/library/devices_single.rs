@@ -68,6 +68,8 @@ fn single_precision_costs_no_more_than_its_rounding() {
     for (name, set) in [
         ("ctvf/taylor-green", &[][..]),
         ("ctvf/dam-break-3d", &[]),
+        // Its smoothing length of 0.04 m is rounded down; that of the other is a number in single precision.
+        ("ctvf/dam-break", &[]),
         ("ctvf/swinging-plate", &[]),
         ("ctvf/rings", &[]),
         ("dual-support/free-vibration", &["parameters.dx=1"]),

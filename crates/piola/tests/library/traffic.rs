@@ -78,8 +78,8 @@ fn fluids_move_what_their_tables_have() {
     let own = side + 3.0 * NUMBER;
     let rates = traffic(scheme, "rates");
     assert_close(&rates, [own, rows + groups * 8.0 * (side + place), own + place + rows]);
-    // Eight vectors of accelerations and sums in place of three rates.
-    let own = side + 16.0 * NUMBER;
+    // Eight vectors of accelerations and sums and one number in place of three rates.
+    let own = side + 17.0 * NUMBER;
     let forces = traffic(scheme, "forces");
     assert_close(&forces, [own, rows + groups * 8.0 * (side + place), own + place + rows]);
     // Position, velocity, deviation, density, pressure and mass with the order become the side and the place; the rows

@@ -6,7 +6,7 @@ use piola_device::{Device, Language};
 use piola_formulas::pairs::Record;
 use piola_formulas::pairs::wall::{Around, Extrapolation, Ghost, Surroundings};
 
-use super::ledger::{ACCELERATIONS, Drift};
+use super::ledger::{ACCELERATIONS, DRIFTING, Drift};
 use super::stages::{Instant, Pass};
 use super::walls::WallValues;
 use super::{
@@ -34,7 +34,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// Its mechanisms that accelerate, in the order of [`Forces::terms`](super::Forces).
     const ACCELERATING: [Option<Entry>; ACCELERATIONS];
     /// Its mechanisms of a drift: pressure, transport and one of its own.
-    const DRIFTING: [Entry; 3];
+    const DRIFTING: [Option<Entry>; DRIFTING];
     /// What particles that are removed take along.
     const REMOVED: Entry;
     /// What walls do, and what holds particles as prescribed.

@@ -34,6 +34,8 @@ pub struct Forces<const D: usize> {
     pub crowding: Vector<D>,
     /// `-sum V_b grad W_ab` of CTVF (42), in 1/m, where particles are shifted by (35).
     pub opening: Vector<D>,
+    /// `sum m_b W_ab` in kg/m^3 of all neighbours, where a fluid is shifted by (35).
+    pub filling: f64,
 }
 
 impl<const D: usize> Default for Forces<D> {
@@ -48,6 +50,7 @@ impl<const D: usize> Default for Forces<D> {
             body_force: zero,
             crowding: zero,
             opening: zero,
+            filling: 0.0,
         }
     }
 }

@@ -15,8 +15,8 @@ pub(super) const ACCELERATIONS: usize = 6;
 /// Sums over particles that a kick needs, by mechanism.
 pub(super) type Kick = [Total; ACCELERATIONS];
 
-/// Number of the mechanisms of a drift: pressure, transport and one of the matter.
-pub(super) const DRIFTING: usize = 3;
+/// Number of the mechanisms of a drift: pressure, transport and those of the matter.
+pub(super) const DRIFTING: usize = 4;
 
 /// Sums over particles of what a drift does, by mechanism.
 pub type Drift = [Total; DRIFTING];
@@ -65,7 +65,7 @@ impl<const D: usize> Common<D> {
     ) {
         let momentum = velocity * (step * self.mass[number]);
         let (moments, count) = moments(deviation, &momentum);
-        let [_, transport, _] = sums;
+        let [_, transport, ..] = sums;
         let angular = transport.force.iter_mut().zip(&moments).take(count).skip(D);
         angular.for_each(|(sum, moment)| *sum += moment);
     }

@@ -17,6 +17,8 @@
 //! CTVF (12), (18) and (23); the printed (25), (26), (27) have other signs, and (27) has sums that slow a uniform stream,
 //! theory (22).
 //!
+//! Below free surfaces the density relaxes to the summation density, theory (108).
+//!
 //! E exchanges what pressures are beyond those of a fluid at rest,
 //! `p_b - p_a - (rho_a + rho_b)/2 g . (r_b - r_a)` for the paper's `p_b - p_a`. Inside a fluid that is the
 //! same; at a free surface, which has neighbours below only, the pressure of depth would diffuse out
@@ -27,7 +29,7 @@
 //! [`Hypoelastic`]. What is said of the fluid of neighbours, walls, surfaces, shifting and time holds for both.
 //!
 //! Walls are layers of ghost particles, CTVF (46) to (52). Everything that a state needs to go on
-//! is in its columns: r, u, rho, p, du/dt and d.
+//! is in its columns: r, u, rho, p, du/dt, d, and by how much the summation density of a fluid is above rho.
 
 mod barrier;
 mod build;

@@ -144,6 +144,9 @@ pub struct Settings {
     pub viscous: Viscous,
     /// The factor alpha of the artificial viscosity, CTVF (28).
     pub artificial_viscosity: f64,
+    /// How fast the density of a fluid with free surfaces relaxes to the summation density, in units of
+    /// `c/h`, theory (108).
+    pub density_relaxation: f64,
     /// Whether free surfaces are looked for, CTVF (42) to (45).
     pub free_surface: bool,
     /// How particles are shifted there.
@@ -159,6 +162,7 @@ impl Settings {
         shifting: Shifting::Sun { factor: 1.0 },
         viscous: Viscous::Laplacian,
         artificial_viscosity: 0.0,
+        density_relaxation: 0.002,
         free_surface: false,
         at_surface: AtSurface::Held,
     };
@@ -171,6 +175,14 @@ impl Settings {
     /// Whether densities or pressures are functions of places or of each other.
     pub(super) fn sets_state(&self) -> bool {
         self.density == DensityRule::Summation || self.is_algebraic()
+    }
+
+    /// Whether densities of fluids relax to the summation density: where they are integrated, and free surfaces are
+    /// found with the accelerations.
+    pub(super) fn relaxes(&self) -> bool {
+        let by_crowding = matches!(self.shifting, Shifting::Sun { .. });
+        let is_integrated = self.density == DensityRule::Continuity;
+        self.density_relaxation > 0.0 && self.free_surface && by_crowding && is_integrated
     }
 
     /// Diffusivity of the pressure in m^2/s, CTVF (24), for a smoothing length in m and a wave speed in

@@ -47,15 +47,16 @@ pub enum Pass<O> {
     Own(O),
 }
 
-/// The columns of the state, the last of matter that has columns of its own. Neighbours are found by positions,
+/// The columns of the state, the last two those of fluids or solids alone. Neighbours are found by positions,
 /// which all may see.
-const STATE: [&str; 7] = [
+const STATE: [&str; 8] = [
     "position",
     "velocity",
     "density",
     "pressure",
     "acceleration",
     "shifting_velocity",
+    "excess",
     "material_state",
 ];
 
@@ -89,7 +90,7 @@ const LOADED: [&str; 9] = [
 /// What a drift changes of them.
 const MOVED: [&str; 5] = ["position", "velocity", "density", "pressure", "material_state"];
 
-/// What a drift reads.
+/// What a drift reads, the last of solids, for which fluids have an excess of the summation density.
 const MOVING: [&str; 10] = [
     "rates",
     "side.density",
@@ -102,6 +103,13 @@ const MOVING: [&str; 10] = [
     "pressure",
     "material_state",
 ];
+
+/// The same of fluids.
+const FLOWING: [&str; 10] = {
+    let mut all = MOVING;
+    all[MOVING.len() - 1] = "excess";
+    all
+};
 
 /// What they see of walls of matter that has no columns of its own.
 const WALL: [&str; 5] =
@@ -175,11 +183,17 @@ pub(super) fn stage_of<const D: usize, M: Continuum<D>>(pass: Pass<M::Own>) -> S
             let gathers = sides!["place"; "side.material", "tension.constants"];
             ("rates", [reads, of::<D, M>(gathers, 2), &["rates"], &[]])
         }
-        Pass::Move => ("move", [of::<D, M>(&MOVING, 1), &[], &[], of::<D, M>(&MOVED, 1)]),
+        Pass::Move => {
+            let reads = if M::HAS_MATERIAL { &MOVING } else { &FLOWING };
+            ("move", [reads, &[], &[], of::<D, M>(&MOVED, 1)])
+        }
         Pass::Forces => {
             let reads = of::<D, M>(sides!["neighbors"; "tension"], 1);
             let gathers = of::<D, M>(sides!["place"; "tension"], 1);
-            let writes = &["forces", "forces.crowding", "forces.opening"];
+            let writes: &[&str] = match M::HAS_MATERIAL {
+                true => &["forces", "forces.crowding", "forces.opening"],
+                false => &["forces", "forces.crowding", "forces.opening", "forces.filling"],
+            };
             ("forces", [reads, gathers, writes, &[]])
         }
         Pass::BodyForces => {
@@ -271,7 +285,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     pub(super) fn plan(&mut self) -> Result<(), StageFault> {
         let [drift, accelerate] = self.matter.passes(&self.common);
         // Without rates nothing is moved by them.
-        let all = [of::<D, M>(&STATE, 1), of::<D, M>(&CONSTANTS, 1)].concat();
+        let all = [&STATE, of::<D, M>(&CONSTANTS, 1)].concat();
         let mut state = all.clone();
         state.extend((!drift.contains(&Pass::Rates)).then_some("rates"));
         let arrays = [self.common.arrays::<M>(), self.matter.arrays()].concat();
@@ -315,7 +329,9 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             Pass::Rates => matter.find_rates(common, time),
             Pass::Move => {
                 let sums = matter.advance(common, step, state);
-                M::DRIFTING.iter().zip(&sums).for_each(|(entry, sum)| totals.book(*entry, sum));
+                for (entry, sum) in M::DRIFTING.iter().zip(&sums) {
+                    entry.iter().for_each(|entry| totals.book(*entry, sum));
+                }
                 common.move_walls(step, time, state);
                 matter.lead(common, step, time, state);
             }

@@ -29,7 +29,16 @@ impl Reader<'_, '_> {
         if is_solid {
             self.meaningless(record, "viscous_force", "for solids");
             self.meaningless(record, "damping", "for solids");
+            self.meaningless(record, "density_relaxation", "for solids");
             self.meaningless(record, "refine", "for solids");
+        }
+        let relaxes = record.boolean("free_surface") == Some(true);
+        if !is_solid && !relaxes {
+            self.meaningless(record, "density_relaxation", "without `free_surface = true`");
+        } else if !is_solid && record.text("shifting")?.as_str() != "spst" {
+            self.meaningless(record, "density_relaxation", "without `shifting = \"spst\"`");
+        } else if !is_solid && record.text("density")?.as_str() == "summation" {
+            self.meaningless(record, "density_relaxation", "with `density = \"summation\"`");
         }
         let alpha = record.number("pressure_diffusion").map(|it| it.value);
         let alpha = alpha.unwrap_or(DIFFUSION[usize::from(is_solid)]);
@@ -86,6 +95,8 @@ impl Reader<'_, '_> {
                     _ => Viscous::Laplacian,
                 },
                 artificial_viscosity: record.number("artificial_viscosity")?.value,
+                density_relaxation: (record.number("density_relaxation"))
+                    .map_or(Settings::FLUID.density_relaxation, |it| it.value),
                 free_surface: record.boolean("free_surface").unwrap_or(is_solid),
                 at_surface: match record.text("surface_shifting").as_ref().map(|it| it.as_str()) {
                     Some("held") => AtSurface::Held,

@@ -43,6 +43,13 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "factor of the diffusivity of the pressure, CTVF (24); for `edac`",
         ),
         key(
+            "density_relaxation",
+            Kind::Number(Interval::between(0.0, 1.0)),
+            "1",
+            Derived("0.002; no meaning for solids"),
+            "rate in units of c/h at which the density of a fluid with `free_surface` relaxes to the summation density, with `spst`, theory (108)",
+        ),
+        key(
             "corrections",
             Kind::Name(CORRECTIONS),
             "",

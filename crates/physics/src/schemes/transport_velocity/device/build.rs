@@ -23,7 +23,7 @@ pub(super) const LAYOUT: Layout = Layout {
     narrow: &[
         "side", "rate", "force", "summed", "shear", "hold", "sliding", "faces", "mark", "near",
         "alone", "surface", "close_by", "reach", "sharp", "normal", "crowd", "escaped",
-        "half_force", "spot", "matter", "waves", "continuum", "tension", "correction",
+        "half_force", "spot", "matter", "waves", "continuum", "tension", "correction", "filling",
     ],
     planes: &[
         "place", "spot", "side", "half_force", "shear", "hold", "matter", "waves", "tension",

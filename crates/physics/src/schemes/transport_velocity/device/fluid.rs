@@ -38,12 +38,17 @@ pub(in super::super) struct FluidPlan<const D: usize> {
     force_constants: ForceConstants,
     force_kind: (u8, bool, bool),
     compliance: f64,
+    /// The rate in m^2/s^3 at which pressures relax, if they do, and one over what the kernel sums to over a lattice.
+    relaxation: Option<[f64; 2]>,
 }
 
 impl<const D: usize> OfMatter<D> for FluidPlan<D> {
     type Kind = WeaklyCompressible<D>;
 
-    const STATE: &'static [[&'static str; 2]] = &STATE;
+    const STATE: &'static [[&'static str; 2]] = &{
+        let [a, b, c, d, e, f] = STATE;
+        [a, b, c, d, e, f, ["excess", "excess_before"]]
+    };
     const FIGURES: usize = FIGURES;
 
     fn of(system: &TransportVelocity<D>) -> Result<Self, DeviceRefusal> {
@@ -71,6 +76,8 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
             force_constants,
             force_kind,
             compliance: matter.compliance(),
+            relaxation: (common.settings.relaxes())
+                .then(|| [matter.relaxation(common), matter.lattice_sum().recip()]),
         })
     }
 
@@ -82,6 +89,7 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
         let count = system.common.particles.len();
         // What falls is read by the pass of rates.
         let mut scratch = vec![("rate", 3 * count), ("half_force", D * count)];
+        scratch.extend(self.relaxation.map(|_| ("filling", count)));
         scratch.extend(self.plan.sums_densities.then_some(("summed", count)));
         scratch.extend((self.plan.normals > 0).then_some(("shear", D * count)));
         Room { scratch, filled: Vec::new() }
@@ -101,6 +109,7 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
         if plan.sums_densities {
             all.push(self.densities(dialect, space));
         }
+        all.extend(self.relaxation.map(|[_, scale]| self.excess(dialect, scale)));
         if plan.falls {
             all.push(self.fall(dialect));
         }
@@ -114,6 +123,7 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
         match stage {
             Stage::State if self.plan.sums_densities => &["densities", "state"],
             Stage::Rates if self.plan.falls => &["fall", "rates"],
+            Stage::Own(Ends::Excess) => &["excess"],
             // Those of open boundaries and of damping are refused.
             _ => self.plan.passes_of(stage),
         }
@@ -232,7 +242,8 @@ impl<const D: usize> FluidPlan<D> {
             through("slots", "rate", 3),
             through("slots", "side", side_width(D)),
         ];
-        let reads = [&reads, &*self.plan.of_motion()].concat();
+        let relaxing = self.relaxation.map(|_| own("excess", 1));
+        let reads = [&reads, relaxing.as_slice(), &*self.plan.of_motion()].concat();
         let writes = [
             own("position", D),
             own("density", 1),
@@ -248,12 +259,14 @@ impl<const D: usize> FluidPlan<D> {
             let rates = [one(&mut x), one(&mut x), one(&mut x)];
             let [divergence, pressure_transport, pressure_diffusion] = rates;
             let before: Side<Traced, D> = side(&mut x);
+            let relaxing = self.relaxation.map(|[rate, _]| one(&mut x) * rate);
             let zero = Traced::from(0.0);
             let Fluid { density: at_rest, wave_speed, .. } = self.fluid;
             let stiffness = wave_speed.powi(2);
             let compression = -before.density * stiffness * divergence;
-            let pressure_rates = [compression, pressure_transport, pressure_diffusion];
-            let pressure_rate = compression + pressure_transport + pressure_diffusion;
+            let relaxing = relaxing.unwrap_or(zero);
+            let pressure_rates = [compression, pressure_transport, pressure_diffusion, relaxing];
+            let pressure_rate = pressure_rates.into_iter().reduce(|a, b| a + b).unwrap_or(zero);
             let mean = pressure + step * 0.5 * pressure_rate;
             let powers = pressure_rates.map(|rate| step * mass * self.compliance * mean * rate);
             let terms = self.plan.drift_terms(powers, [&velocity, &deviation], [step, mass]);
@@ -307,7 +320,9 @@ impl<const D: usize> FluidPlan<D> {
             (_, true, true) => of!(STRESS, true, true),
         };
         let gravity = self.plan.falls.then_some(through("numbers", "gravity", D));
-        gather.close(&[], gravity.as_slice(), &[own("force", FORCES * D)], |sums, mut x| {
+        let filling = self.relaxation.map(|_| own("filling", 1));
+        let writes = [&[own("force", FORCES * D)], filling.as_slice()].concat();
+        gather.close(&[], gravity.as_slice(), &writes, |sums, mut x| {
             let body_force = match self.plan.falls {
                 true => take(&mut x),
                 false => Vector::<D>::repeat(Traced::from(0.0)),
@@ -322,7 +337,28 @@ impl<const D: usize> FluidPlan<D> {
                 sums.crowding,
                 -sums.volume,
             ];
-            rows.iter().flat_map(|row| row.iter().copied()).collect()
+            let filling = filling.map(|_| sums.filling);
+            rows.iter().flat_map(|row| row.iter().copied()).chain(filling).collect()
+        })
+    }
+
+    /// By how much summation densities are above densities, where no free surface is within the support.
+    fn excess(&self, dialect: Dialect, scale: f64) -> Pass {
+        let reads = [
+            own("wall", 1),
+            through("slots", "side", side_width(D)),
+            through("slots", "filling", 1),
+            through("slots", "reach", 1),
+        ];
+        let centre = self.plan.kernel.value(D, 0.0, self.plan.smoothing_length);
+        local(dialect, "excess", &[], &reads, &[own("excess", 1)], |mut x| {
+            let wall = one(&mut x);
+            let me: Side<Traced, D> = side(&mut x);
+            let (filling, reach) = (one(&mut x), one(&mut x));
+            let summed = me.mass() * centre + filling;
+            let (excess, zero) = (summed * scale - me.density, Traced::from(0.0));
+            let is_within = Traced::from(self.plan.smoothing_length).at_most(reach);
+            vec![if_fluid(wall, Traced::select(is_within, excess, zero), zero)]
         })
     }
 

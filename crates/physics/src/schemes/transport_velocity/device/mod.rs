@@ -211,7 +211,9 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
                 let [_, transport, ..] = &mut drift;
                 transport.force[..impulse.len()].copy_from_slice(impulse);
                 let entries = P::Kind::DRIFTING;
-                entries.iter().zip(&drift).for_each(|(entry, sum)| totals.book(*entry, sum));
+                for (entry, sum) in entries.iter().zip(&drift) {
+                    entry.iter().for_each(|entry| totals.book(*entry, sum));
+                }
                 Ok(())
             }
             Pass::Forces => {

@@ -10,6 +10,10 @@ use super::passes::{FORCES, Plan, side, side_width};
 use super::walls::forces;
 use crate::schemes::device::{Recorded as Vector, one, square, take};
 
+/// The reach where no surface is within the support. It is compared with the smoothing length, which rounds down as often as
+/// not in a column of single precision.
+const FAR: f64 = f64::INFINITY;
+
 impl<const D: usize> Plan<D> {
     /// Passes that look for free surfaces.
     pub(super) fn surface_passes(&self, dialect: Dialect, space: &Space<D>) -> Vec<Pass> {
@@ -141,8 +145,8 @@ impl<const D: usize> Plan<D> {
                 let (yes, no) = (Traced::from(1.0), Traced::from(0.0));
                 let is_free = x[0].above(0.5);
                 let sees = seen.above(0.5) & x[0].below(0.5);
-                let h = Traced::from(self.smoothing_length);
-                vec![Traced::select(sees, yes, no), Traced::select(is_free, no, h)]
+                let far = Traced::from(FAR);
+                vec![Traced::select(sees, yes, no), Traced::select(is_free, no, far)]
             })
     }
 
@@ -163,7 +167,7 @@ impl<const D: usize> Plan<D> {
             .close(&[], &[], &[own("reach", 1)], |nearest, _| {
                 let h = Traced::from(self.smoothing_length);
                 let reach = nearest.sqrt() / Traced::from(self.kernel.support_over_h());
-                vec![Traced::select(reach.less(h), reach, h)]
+                vec![Traced::select(reach.less(h), reach, Traced::from(FAR))]
             })
     }
 

@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 use piola_formulas::pairs::sums::Density;
 
-use super::{Common, DensityRule, WeaklyCompressible};
+use super::{Common, DensityRule, StoredMut, WeaklyCompressible};
 use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::parallel;
 use crate::schemes::transport_velocity::Side;
@@ -20,6 +20,30 @@ impl<const D: usize> WeaklyCompressible<D> {
                 let place = first + offset;
                 *density = sides[place].mass() * centre;
                 add_at(support, &sum, place, &mut block, density);
+            }
+        });
+    }
+
+    /// Fills by how much the summation density is above the density, theory (108): zero on and near free surfaces, where the
+    /// sum is no density, and in the buffers of open boundaries, whose state is prescribed.
+    pub(super) fn find_excess(&self, common: &Common<D>, state: &mut [f64]) {
+        let (scale, centre) = (self.lattice_sum.recip(), common.support.centre());
+        let (places, h) = (common.support.list().places(), common.support.smoothing_length());
+        let (_, tail) = common.parts(state);
+        let (StoredMut { excess, opening, .. }, _) = StoredMut::<D>::of(tail, common.count());
+        let opening = &*opening;
+        parallel::for_each_chunk(excess, |first, rows| {
+            for (row, excess) in (first..).zip(rows) {
+                let place = places[row] as usize;
+                let is_within = common.openings[place].reach >= h && common.active(place).is_some();
+                *excess = match is_within && opening[row] == 0.0 {
+                    true => {
+                        let side = &common.sides[place];
+                        let summed = side.mass() * centre + common.forces[place].filling;
+                        summed * scale - side.density
+                    }
+                    false => 0.0,
+                };
             }
         });
     }

@@ -2,7 +2,7 @@
 
 use piola_formulas::fluid;
 
-use super::{Common, DensityRule, Fluid, WeaklyCompressible};
+use super::{Common, DensityRule, Fluid, Stored, WeaklyCompressible};
 use crate::schemes::transport_velocity::ledger::Drift;
 
 impl<const D: usize> WeaklyCompressible<D> {
@@ -15,7 +15,9 @@ impl<const D: usize> WeaklyCompressible<D> {
         let evolves = common.settings.density == DensityRule::Continuity;
         let diffuses = !common.settings.is_algebraic();
         let (compliance, Fluid { density, wave_speed, .. }) = (self.compliance(), self.fluid);
-        let (own, _) = common.parts(state);
+        let (own, tail) = common.parts(state);
+        let excess = Stored::<D>::of(tail, common.count()).excess;
+        let relaxation = self.relaxation(common);
         let (places, begin) = (common.support.list().places(), common.first());
         common.team().sums_over_parts(places.len(), own, |first, own, sums: &mut Drift| {
             let moving = own.position.iter_mut().zip(own.velocity.iter().zip(&*own.deviation));
@@ -25,7 +27,7 @@ impl<const D: usize> WeaklyCompressible<D> {
                     continue;
                 }
                 let place = places[first + k] as usize;
-                let rates = self.pressure_rates(common, place);
+                let rates = self.pressure_rates(common, place, relaxation * excess[first + k]);
                 let rate = rates.iter().sum::<f64>();
                 if diffuses {
                     let mass = common.mass[number];
@@ -59,11 +61,22 @@ impl<const D: usize> WeaklyCompressible<D> {
         })
     }
 
-    /// Rates of the pressure in Pa/s by compression, transport and diffusion. Over `c^2` they are
-    /// those of the density.
-    pub(super) fn pressure_rates(&self, common: &Common<D>, place: usize) -> [f64; 3] {
+    /// The rate in m^2/s^3 at which the pressure relaxes: of an excess of the summation density in kg/m^3, theory (108).
+    pub(in super::super) fn relaxation(&self, common: &Common<D>) -> f64 {
+        match common.settings.relaxes() {
+            true => {
+                let waves = self.fluid.wave_speed.powi(3) / common.support.smoothing_length();
+                common.settings.density_relaxation * waves
+            }
+            false => 0.0,
+        }
+    }
+
+    /// Rates of the pressure in Pa/s by compression, transport, diffusion, and relaxation, which is given. Over `c^2` they
+    /// are those of the density.
+    fn pressure_rates(&self, common: &Common<D>, place: usize, relaxing: f64) -> [f64; 4] {
         let (rates, stiffness) = (&self.rates[place], self.fluid.wave_speed.powi(2));
         let compression = -common.sides[place].density * stiffness * rates.divergence;
-        [compression, rates.pressure_transport, rates.pressure_diffusion]
+        [compression, rates.pressure_transport, rates.pressure_diffusion, relaxing]
     }
 }

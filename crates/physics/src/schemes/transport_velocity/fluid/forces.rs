@@ -56,6 +56,7 @@ impl<const D: usize> WeaklyCompressible<D> {
             artificial: common.settings.artificial_viscosity * h * self.fluid.wave_speed,
             dilatation: f64::from(u8::from(corrections.momentum == Momentum::Paper)),
             crowding: crowding.unwrap_or(0.0),
+            specific_volume: self.fluid.density.recip(),
         };
         let kind = match corrections.momentum {
             Momentum::None => NONE,
@@ -119,5 +120,6 @@ fn accelerations<const D: usize>(sums: &ForceSums<f64, D>) -> Forces<D> {
         body_force: Vector::zeros(),
         crowding: sums.crowding,
         opening: -sums.volume,
+        filling: sums.filling,
     }
 }

@@ -16,7 +16,7 @@ use piola_formulas::pairs::sums::Density;
 
 use super::device::{self, FluidPlan};
 use super::fields::Made;
-use super::ledger::{ACCELERATIONS, Drift};
+use super::ledger::{ACCELERATIONS, DRIFTING, Drift};
 use super::stages::{Instant, Pass, stage};
 use super::walls::WallValues;
 use super::{
@@ -39,6 +39,7 @@ pub use open::{Flow, Nesting, OpenBoundaries, OpenBoundary, Refined};
 
 columns! {
     pub(super) struct Stored, StoredMut, enum Own;
+    kept excess: Scalar, "kg/m3", "summation density less density, where the density relaxes to it";
     evolved opening: Scalar, "1", "number of the open boundary whose buffer contains the particle, from 1; 0 in the fluid";
     evolved birth: Scalar, "1", "number of particles that had entered when this one did; 0 if it was there at the start";
     evolved nesting: Scalar, "1", "role of the particle among levels of resolution: 2 where it follows those of another one, 1 where finer ones stand beside it";
@@ -86,6 +87,7 @@ pub(super) const LEDGER: Accounts = Accounts {
         "walls",
         "body_force",
         "pressure_diffusion",
+        "density_relaxation",
         "removed",
         "openings",
         "damping",
@@ -119,11 +121,14 @@ pub(super) const ACCELERATING: [Entry; ACCELERATIONS] = [
 ];
 
 /// The mechanisms of a drift.
-pub(super) const DRIFTING: [Entry; 3] = [PRESSURE, TRANSPORT, LEDGER.entry("pressure_diffusion")];
+pub(super) const MOVING: [Entry; DRIFTING] =
+    [PRESSURE, TRANSPORT, LEDGER.entry("pressure_diffusion"), LEDGER.entry("density_relaxation")];
 
 /// A fluid bound to its particles, with scratch by place.
 pub struct WeaklyCompressible<const D: usize> {
     fluid: Fluid,
+    /// What the kernel sums to over a lattice, [`Common::lattice_sum`].
+    lattice_sum: f64,
     densities: Vec<f64>,
     rates: Vec<Rates>,
     /// Velocity of each wall particle that viscous forces see.
@@ -143,6 +148,8 @@ pub enum Ends {
     Part,
     /// Motion dies out.
     Damp,
+    /// By how much summation densities are above densities.
+    Excess,
 }
 
 impl<const D: usize> WeaklyCompressible<D> {
@@ -152,6 +159,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let touched = if common.walls.is_empty() { 0 } else { count };
         Self {
             fluid,
+            lattice_sum: common.lattice_sum(),
             densities: vec![0.0; count],
             rates: vec![Rates::default(); count],
             shear: vec![Vector::zeros(); touched],
@@ -163,6 +171,11 @@ impl<const D: usize> WeaklyCompressible<D> {
     /// What it is made of.
     pub(super) fn fluid(&self) -> &Fluid {
         &self.fluid
+    }
+
+    /// What the kernel sums to over a lattice.
+    pub(super) fn lattice_sum(&self) -> f64 {
+        self.lattice_sum
     }
 
     /// Whether its motion dies out somewhere.
@@ -185,7 +198,10 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         let [a, b, c, d, e, f] = ACCELERATING;
         [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)]
     };
-    const DRIFTING: [Entry; 3] = DRIFTING;
+    const DRIFTING: [Option<Entry>; DRIFTING] = {
+        let [a, b, c, d] = MOVING;
+        [Some(a), Some(b), Some(c), Some(d)]
+    };
     const REMOVED: Entry = LEDGER.entry("removed");
     const WALLS: Entry = WALLS;
     const HAS_MATERIAL: bool = false;
@@ -296,8 +312,12 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             true => Vec::new(),
             false => vec![Pass::Own(Ends::Damp)],
         };
+        let excess = match settings.relaxes() {
+            true => vec![Pass::Own(Ends::Excess)],
+            false => Vec::new(),
+        };
         let pushed = [forces, part, body_forces, damp].concat();
-        let accelerate = [exchange, found, walls, buffers, pushed, shift, barrier, stored];
+        let accelerate = [exchange, found, walls, buffers, pushed, shift, excess, barrier, stored];
         [drift.concat(), accelerate.concat()]
     }
 
@@ -314,6 +334,10 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             Ends::Damp => {
                 let reads = &["position", "side.velocity", "forces"];
                 stage("damp", [reads, &[], &["forces", "damping"], &[]])
+            }
+            Ends::Excess => {
+                let reads = &["forces.filling", "side.density", "surface.reach", "material_state"];
+                stage("excess", [reads, &[], &["excess"], &[]])
             }
             Ends::Part => {
                 let gathers = &["side.velocity", "side.density", "side.pressure"];
@@ -335,6 +359,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             Ends::Buffers => self.fill_buffers(common, at.time),
             Ends::Part => self.part_forces(common),
             Ends::Damp => self.damp(common),
+            Ends::Excess => self.find_excess(common, state),
         }
     }
 
@@ -442,6 +467,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             Array::of::<Rates>("rates"),
             Array::of::<Vector<D>>("shear"),
             Array::of::<f64>("summed"),
+            Array::of::<f64>("excess"),
         ]
     }
 

@@ -96,6 +96,20 @@ impl<const D: usize> Common<D> {
         sum
     }
 
+    /// The sum of the kernel over a square lattice of the spacing times the volume of a particle in it: 1 but for what a
+    /// kernel of few neighbours lacks.
+    pub(in super::super) fn lattice_sum(&self) -> f64 {
+        let (kernel, h) = (self.support.kernel(), self.support.smoothing_length());
+        let spacing = self.particles.spacing[0];
+        let reach = (kernel.support_radius(h) / spacing) as usize;
+        let width = 2 * reach + 1;
+        let sites = (0..width.pow(D as u32)).map(|site| {
+            let steps = (0..D).map(|axis| (site / width.pow(axis as u32) % width).abs_diff(reach));
+            (steps.map(|steps| steps * steps).sum::<usize>() as f64).sqrt() * spacing
+        });
+        sites.map(|distance| kernel.value(D, distance, h)).sum::<f64>() * spacing.powi(D as i32)
+    }
+
     /// The kernel at a distance of one spacing, in m^-D.
     pub(in super::super) fn value_at_spacing(&self, smoothing_length: f64) -> f64 {
         self.support.kernel().value(D, self.particles.spacing[0], smoothing_length)

@@ -27,7 +27,7 @@ impl<const D: usize> Hypoelastic<D> {
             common.add_turning(number, step, [velocity, deviation], sums);
             (own.density[k], own.pressure[k]) = (moved.density, moved.pressure);
             common.advect(step, &mut own.position[k], velocity + deviation);
-            let [pressure, _, plasticity] = sums;
+            let [pressure, _, plasticity, _] = sums;
             pressure.power += gained;
             plasticity.power -= work;
             moved.matter

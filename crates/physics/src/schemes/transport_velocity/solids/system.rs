@@ -19,7 +19,7 @@ use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
 use crate::schemes::transport_velocity::device::{self, SolidPlan};
 use crate::schemes::transport_velocity::fields::Made;
-use crate::schemes::transport_velocity::ledger::{ACCELERATIONS, Drift};
+use crate::schemes::transport_velocity::ledger::{ACCELERATIONS, DRIFTING, Drift};
 use crate::schemes::transport_velocity::stages::{Instant, Pass, stage};
 use crate::schemes::transport_velocity::walls::WallValues;
 use crate::schemes::transport_velocity::{
@@ -105,7 +105,8 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
         Some(WALLS),
         Some(LEDGER.entry("body_force")),
     ];
-    const DRIFTING: [Entry; 3] = [PRESSURE, TRANSPORT, LEDGER.entry("plasticity")];
+    const DRIFTING: [Option<Entry>; DRIFTING] =
+        [Some(PRESSURE), Some(TRANSPORT), Some(LEDGER.entry("plasticity")), None];
     const REMOVED: Entry = LEDGER.entry("removed");
     const WALLS: Entry = WALLS;
     const HAS_MATERIAL: bool = true;

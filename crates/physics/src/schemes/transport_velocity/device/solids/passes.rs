@@ -244,7 +244,7 @@ impl<const D: usize> SolidPlan<D> {
             });
             let after: [Traced; MATTER + 2] = after;
             let zero = Traced::from(0.0);
-            let powers = [gained, zero, -work];
+            let powers = [gained, zero, -work, zero];
             let terms = self.plan.drift_terms(powers, [&velocity, &deviation], [step, mass]);
             let next = self.plan.moved(&position, &(velocity + deviation), step);
             let before = [density, pressure].into_iter().chain(matter);
