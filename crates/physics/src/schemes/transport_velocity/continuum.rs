@@ -33,7 +33,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     const DESCRIPTION: &'static SchemeDescription;
     /// Its mechanisms that accelerate, in the order of [`Forces::terms`](super::Forces).
     const ACCELERATING: [Option<Entry>; ACCELERATIONS];
-    /// Its mechanisms of a drift: pressure, transport and one of its own.
+    /// Its mechanisms of a drift: pressure, transport and its own.
     const DRIFTING: [Option<Entry>; DRIFTING];
     /// What particles that are removed take along.
     const REMOVED: Entry;

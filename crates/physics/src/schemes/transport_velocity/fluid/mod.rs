@@ -120,10 +120,6 @@ pub(super) const ACCELERATING: [Entry; ACCELERATIONS] = [
     BODY_FORCE,
 ];
 
-/// The mechanisms of a drift.
-pub(super) const MOVING: [Entry; DRIFTING] =
-    [PRESSURE, TRANSPORT, LEDGER.entry("pressure_diffusion"), LEDGER.entry("density_relaxation")];
-
 /// A fluid bound to its particles, with scratch by place.
 pub struct WeaklyCompressible<const D: usize> {
     fluid: Fluid,
@@ -198,10 +194,12 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         let [a, b, c, d, e, f] = ACCELERATING;
         [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)]
     };
-    const DRIFTING: [Option<Entry>; DRIFTING] = {
-        let [a, b, c, d] = MOVING;
-        [Some(a), Some(b), Some(c), Some(d)]
-    };
+    const DRIFTING: [Option<Entry>; DRIFTING] = [
+        Some(PRESSURE),
+        Some(TRANSPORT),
+        Some(LEDGER.entry("pressure_diffusion")),
+        Some(LEDGER.entry("density_relaxation")),
+    ];
     const REMOVED: Entry = LEDGER.entry("removed");
     const WALLS: Entry = WALLS;
     const HAS_MATERIAL: bool = false;
