@@ -7,6 +7,8 @@ use piola::case::{self, Case, LoadOptions, Session};
 use piola::schemes::Behind;
 use piola::time::{Failure, Outcome};
 
+use super::escapes::run;
+
 fn slab(set: &[&str]) -> Case {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/coupled/slab/case.toml");
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
@@ -62,13 +64,21 @@ fn steps_of_both_together_are_of_second_order() {
     }
 }
 
-/// A solid that is held everywhere is a wall to the fluid: the same particles, the same bits.
+/// A solid that is held everywhere is a wall to the fluid, which slides along it or sticks to it: the same particles, the
+/// same bits.
 #[test]
 fn a_held_solid_is_a_wall_to_the_bit() {
     let velocities = |extra: &[&str]| -> Vec<(u32, Vec<u64>)> {
-        // Thick enough for no fluid to see through it.
-        let common =
-            ["parameters.n=8", "parameters.thickness=0.75", "time.step=1e-3", "probe.slab="];
+        // Thick enough for no fluid to see through it, and a stream of water along it.
+        let common = [
+            "parameters.n=8",
+            "parameters.thickness=0.75",
+            "time.step=1e-3",
+            "probe.slab=",
+            "body.water.material.viscosity=0.01",
+            "body.floor.material.viscosity=0.01",
+            "body.water.initial.velocity=['0.1 * y', '-kick * y']",
+        ];
         let case = slab(&[&common, extra].concat());
         let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
         session.run_until(0.1).expect("it runs");
@@ -83,14 +93,6 @@ fn a_held_solid_is_a_wall_to_the_bit() {
     };
     let plain = ["plot.slab=", "check=", "output.fields=['velocity']"];
     let held = "boundary+={ name = 'held', body = 'slab', where = { kind = 'all' }, velocity = { x = '0', y = '0' } }";
-    let as_wall = [
-        "body.slab.system=",
-        "system=",
-        "body.slab.material={ kind = 'weakly_compressible', density = 'rho', wave_speed = 'c' }",
-        "body.slab.wall={ slip = 'free' }",
-        "variant=",
-    ];
-    let wall = velocities(&[&plain[..], &as_wall].concat());
     let kinds: [&[&str]; 3] = [
         &[],
         &[
@@ -102,12 +104,30 @@ fn a_held_solid_is_a_wall_to_the_bit() {
             "body.slab.material={ kind='hypoelastic', density=1.0, young_modulus=2500.0, poisson_ratio=0.0 }",
         ],
     ];
-    for kind in kinds {
-        let solid = velocities(&[&plain[..], &[held], kind].concat());
-        assert_eq!(solid.len(), 80);
-        assert!(solid == wall, "the water around a held solid is not that around a wall: {kind:?}");
-    }
-    assert!(wall.iter().any(|(_, v)| f64::from_bits(v[1]) != 0.0), "nothing moves");
+    let walls = ["no", "free"].map(|slip| {
+        let [of_wall, of_solid] = [
+            format!("body.slab.wall={{ slip = '{slip}' }}"),
+            format!("system.slab.slip='{slip}'"),
+        ];
+        let as_wall = [
+            "body.slab.system=",
+            "system=",
+            "body.slab.material={ kind = 'weakly_compressible', density = 'rho', wave_speed = 'c', viscosity = 0.01 }",
+            &of_wall,
+            "variant=",
+        ];
+        let wall = velocities(&[&plain[..], &as_wall].concat());
+        for kind in kinds {
+            let solid = velocities(&[&plain[..], &[held, &of_solid], kind].concat());
+            assert_eq!(solid.len(), 80);
+            assert!(
+                solid == wall,
+                "the water around a held solid is not that around a wall: {slip}, {kind:?}"
+            );
+        }
+        wall
+    });
+    assert!(walls[0] != walls[1], "water sticks to nothing");
 }
 
 /// Water on both sides of a plate three particles thick that nothing moves.
@@ -247,14 +267,45 @@ fn water_and_block_keep_their_momentum() {
     }
 }
 
-/// The momentum of each of two bodies in the plane.
+/// So it is where the surface of the block has a third of the spacing of the water or three times as much, whether the water
+/// slides or sticks.
+#[test]
+fn water_and_block_of_another_spacing_keep_their_momentum() {
+    let place = "{ kind='box', min=[0.05, 0.3], max=[0.5, 0.75] }";
+    for spacing in ["0.05 / 3", "0.15"] {
+        for slip in ["no", "free"] {
+            keeps_momentum(vec![
+                format!("body.water.shape.remove=[{place}]"),
+                format!("body.block.shape={place}"),
+                format!("body.block.spacing='{spacing}'"),
+                format!("system.block.slip='{slip}'"),
+                "body.water.material.viscosity=0.01".into(),
+            ]);
+        }
+    }
+}
+
+/// A soft tail on a rigid head that the water moves.
+#[test]
+fn water_and_a_tail_on_a_moving_head_keep_their_momentum() {
+    let head = "body+={ name='head', system='block', shape={ kind='box', min=[0.05, 0.4], max=[0.2, 0.6] }, \
+                spacing=0.05, initial={ velocity=['-1', '0'] }, material={ kind='rigid', density=2 } }";
+    keeps_momentum(vec![
+        head.into(),
+        "body.block.shape={ kind='box', min=[0.2, 0.4], max=[0.45, 0.6] }".into(),
+        "body.block.spacing=0.05".into(),
+        "system.block.scheme={ kind='elastodynamics', form='adjoint', joined=true }".into(),
+    ]);
+}
+
+/// The momentum of the water and of what is in it.
 pub fn momentum_of(session: &mut Session) -> [[f64; 2]; 2] {
     let velocity = session.column("velocity").expect("it is there").values;
     let masses: Vec<f64> = (0..velocity.len() / 2).map(|a| session.scheme().mass(a)).collect();
     let bodies = session.scheme().bodies().to_vec();
     let mut all = [[0.0; 2]; 2];
     for (a, v) in velocity.chunks_exact(2).enumerate() {
-        (0..2).for_each(|i| all[bodies[a] as usize][i] += masses[a] * v[i]);
+        (0..2).for_each(|i| all[bodies[a].min(1) as usize][i] += masses[a] * v[i]);
     }
     all
 }
@@ -320,4 +371,56 @@ fn a_run_ends_where_a_hypoelastic_solid_comes_apart() {
     assert!((0.025..0.176).contains(&time), "{time}");
     assert!((0.3..0.7).contains(&particle.reference[0]), "{particle:?}");
     assert!(escape.advice.contains("total_lagrangian"), "{}", escape.advice);
+}
+
+/// A jet that is faster than the waves in it, and a thin plate that it goes through.
+const THROUGH: &str = r#"
+version = 1
+title = "A jet goes through a plate"
+dimension = 2
+[[body]]
+name = "jet"
+shape = { kind = "box", min = [-0.45, 0.0], max = [-0.05, 0.2] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 1.0 }
+initial = { velocity = ["3", "0"] }
+[[body]]
+name = "plate"
+system = "plate"
+shape = { kind = "box", min = [0.0, -0.4], max = [0.15, 0.6] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "neo_hookean_logarithmic", density = 20000.0, young_modulus = 1e6, poisson_ratio = 0.3 }
+[scheme]
+kind = "transport_velocity"
+free_surface = true
+[[system]]
+name = "plate"
+scheme = { kind = "dual_support" }
+[time]
+end = 0.2
+"#;
+
+/// What is behind the surface of a solid ends the run at once, by the name of the solid, with the particle, the place and the
+/// time. The first layer of the walls stands 0.025 m behind the face, and in a step the jet moves 0.006 m on.
+#[test]
+fn what_goes_through_a_solid_is_named_at_once() {
+    let finished = run(THROUGH, &[]);
+    let Outcome::Failed(failure) = &finished.summary.outcome else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    let Failure::Escaped { time, escape, particle, .. } = failure else { panic!("{failure}") };
+    assert_eq!(escape.behind, Behind::Wall("plate".into()));
+    assert!((0.025..0.05).contains(&escape.position[0]), "{escape:?}");
+    assert!((0.0..0.2).contains(&escape.position[1]), "{escape:?}");
+    assert!((-0.45..-0.05).contains(&particle.reference[0]), "{particle:?}");
+    // It has 0.1 m to go to the layer, at 3 m/s.
+    assert!((0.033..0.1).contains(time), "{time}");
+    let message = failure.to_string();
+    for part in ["`plate`", "m/s"] {
+        assert!(message.contains(part), "{message}");
+    }
+    let slow = run(THROUGH, &["body.jet.initial.velocity=['0.2', '0']"]);
+    assert_eq!(slow.summary.outcome, Outcome::Completed);
 }
