@@ -127,7 +127,7 @@ fn a_held_solid_is_a_wall_to_the_bit() {
         }
         wall
     });
-    assert!(walls[0] != walls[1], "water sticks to nothing");
+    assert!(walls[0] != walls[1], "walls with and without slip do the same");
 }
 
 /// Water on both sides of a plate three particles thick that nothing moves.
@@ -267,7 +267,7 @@ fn water_and_block_keep_their_momentum() {
     }
 }
 
-/// So it is where the surface of the block has a third of the spacing of the water or three times as much, whether the water
+/// The same holds if the surface of the block has a third of the spacing of the water or three times as much, and the water
 /// slides or sticks.
 #[test]
 fn water_and_block_of_another_spacing_keep_their_momentum() {
@@ -285,7 +285,7 @@ fn water_and_block_of_another_spacing_keep_their_momentum() {
     }
 }
 
-/// A soft tail on a rigid head that the water moves.
+/// The same of a rigid head, which the water moves, with a soft tail.
 #[test]
 fn water_and_a_tail_on_a_moving_head_keep_their_momentum() {
     let head = "body+={ name='head', system='block', shape={ kind='box', min=[0.05, 0.4], max=[0.2, 0.6] }, \
@@ -403,7 +403,8 @@ end = 0.2
 "#;
 
 /// What is behind the surface of a solid ends the run at once, by the name of the solid, with the particle, the place and the
-/// time. The first layer of the walls stands 0.025 m behind the face, and in a step the jet moves 0.006 m on.
+/// time. The first layer of its walls stands 0.025 m behind the face. A particle is told of a tenth of a spacing later, 0.005 m,
+/// in a step of at most 0.25 h u/(c + u) = 0.0094 m.
 #[test]
 fn what_goes_through_a_solid_is_named_at_once() {
     let finished = run(THROUGH, &[]);
@@ -412,15 +413,15 @@ fn what_goes_through_a_solid_is_named_at_once() {
     };
     let Failure::Escaped { time, escape, particle, .. } = failure else { panic!("{failure}") };
     assert_eq!(escape.behind, Behind::Wall("plate".into()));
-    assert!((0.025..0.05).contains(&escape.position[0]), "{escape:?}");
+    assert!((0.025..0.0425).contains(&escape.position[0]), "{escape:?}");
     assert!((0.0..0.2).contains(&escape.position[1]), "{escape:?}");
     assert!((-0.45..-0.05).contains(&particle.reference[0]), "{particle:?}");
-    // It has 0.1 m to go to the layer, at 3 m/s.
+    // It has 0.1 m to go to the layer, at 3 m/s and less.
     assert!((0.033..0.1).contains(time), "{time}");
     let message = failure.to_string();
     for part in ["`plate`", "m/s"] {
         assert!(message.contains(part), "{message}");
     }
-    let slow = run(THROUGH, &["body.jet.initial.velocity=['0.2', '0']"]);
+    let slow = run(THROUGH, &["body.jet.initial.velocity=['0.2', '0']", "time.end=0.6"]);
     assert_eq!(slow.summary.outcome, Outcome::Completed);
 }
