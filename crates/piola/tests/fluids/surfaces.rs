@@ -299,12 +299,12 @@ free_surface = true
 end = 1.0
 "#;
 
-/// In (108) the particles of walls count with the mass that their density has on their lattice: what stands on the lattice that
-/// goes on in the floor has no excess, next to the floor as anywhere. Counted with their mass at rest, a part `p/(rho c^2)` of what
-/// they add would lack, 0.05 kg/m^3 at 20 Pa.
+/// Particles of walls count in theory (108) with the mass that their density has on their lattice: what stands on the lattice
+/// that goes on in the floor has no excess, next to the floor as anywhere. Counted with their mass at rest, a part `p/(rho c^2)`
+/// of what they add would be missing, 0.05 kg/m^3 at 20 Pa.
 ///
 /// Forces do have masses at rest, so that the first row moves by that part of what the pressure would move it: in a step the
-/// excess changes by `(p/(rho c^2))^2 (c dt/dx)^2 rho/2`, of which the last two factors but rho are less than one.
+/// excess changes by `(p/(rho c^2))^2 (c dt/dx)^2 rho/2`, and `c dt` is less than dx.
 #[test]
 fn water_on_a_floor_has_no_excess_whatever_the_pressure() {
     for pressure in [20.0, 200.0] {
