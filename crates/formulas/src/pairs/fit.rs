@@ -88,8 +88,8 @@ impl<const D: usize> PairLaw for Fit<D> {
 /// which a slope is told: less is a line of particles, or fewer than a line.
 const LEAST: f64 = 1e-3;
 
-/// The smallest spread about the mean, over that about the particle, of which a slope is told: that of one neighbour, or of
-/// several in one place, is round-off, 1e-16 of the latter, and this leaves what is told with an error far below [`LEAST`].
+/// The smallest spread about the mean, over that about the particle, of which a slope is told. Of one neighbour, or of several
+/// in one place, it is round-off, 1e-16; where it is larger than this, round-off changes it by 1e-6 of itself at most.
 const LEAST_SPREAD: f64 = 1e-10;
 
 /// The smallest part of the squares of distances that a linear function of places may leave over if a curvature is to be
