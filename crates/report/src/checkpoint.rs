@@ -24,7 +24,7 @@ use super::{OutputError, atomic};
 
 const MAGIC: &[u8; 8] = b"PIOLACKP";
 /// Version of the format.
-const FORMAT: u32 = 8;
+const FORMAT: u32 = 9;
 /// What a payload holds is that program's own affair.
 const PROGRAM: [u8; 16] = program(env!("CARGO_PKG_VERSION"));
 const HEAD: usize = MAGIC.len() + 4 + 16 + 32 + 8;

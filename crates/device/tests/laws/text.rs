@@ -52,7 +52,6 @@ fn gathers(dialect: Dialect) -> [Pass; 4] {
         artificial: 0.0,
         dilatation: 0.0,
         crowding: 0.02,
-        specific_volume: 1e-3,
     });
     let forces = Gather::<ForceSum<2>, _>::new(dialect, "forces", &space, Among::All, Order::Lanes)
         .only("near")

@@ -104,8 +104,6 @@ pub struct ForceConstants {
     pub dilatation: f64,
     /// `1 / W(dx)` in m^D.
     pub crowding: f64,
-    /// `1 / rho_0` in m^3/kg.
-    pub specific_volume: f64,
 }
 
 /// The accelerations of a fluid, CTVF (18), (23), (27), (28), (35), theory (22) to (24): `CORRECTS` is one of
@@ -133,7 +131,7 @@ record! {
         pub volume: Components<D>,
         /// `sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab` of CTVF (35) in 1/m.
         pub crowding: Components<D>,
-        /// `sum m_b W_ab` in kg/m^3; a wall particle counts with the mass of fluid of its density.
+        /// `sum m_b W_ab` in kg/m^3.
         pub filling: One,
     }
 }
@@ -143,12 +141,12 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
 {
     const NEEDS: Needs = if CROWDING { Needs::Both } else { Needs::Slope };
 
-    /// Adds what the corrections and the shifting need, of a neighbour that fills its place with a `mass` in kg.
+    /// Adds what the corrections and the shifting need.
     #[inline(always)]
     fn carry<T: Number>(
         &self,
         me: &Side<T, D>,
-        (other, mass): (&Side<T, D>, T),
+        other: &Side<T, D>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
     ) {
@@ -171,7 +169,7 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
             }
         }
         if CROWDING {
-            sums.filling += mass * pair.value;
+            sums.filling += other.mass() * pair.value;
             let factor = fluid::repulsion(pair.value * self.0.crowding);
             for i in 0..D {
                 let area = pair.separation[i] * slope;
@@ -218,7 +216,7 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
                 sums.artificial_viscosity[i] -= pair.separation[i] * push;
             }
         }
-        self.carry(me, (other, other.mass()), pair, sums);
+        self.carry(me, other, pair, sums);
     }
 }
 
@@ -247,9 +245,7 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
         let wall = Wall::of(&self.0.0);
         let jump = difference(&me.velocity, shear);
         wall.push([me, other], &jump, pair, &mut sums.walls);
-        // Its mass is that at rest, whatever the pressure.
-        let mass = other.mass() * other.density * self.0.0.specific_volume;
-        self.0.carry(me, (other, mass), pair, sums);
+        self.0.carry(me, other, pair, sums);
     }
 }
 

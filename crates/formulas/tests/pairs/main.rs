@@ -106,7 +106,6 @@ const FLUID: fluid::ForceConstants = fluid::ForceConstants {
     artificial: 0.2,
     dilatation: 1.0,
     crowding: 0.7,
-    specific_volume: 0.9,
 };
 
 const STRESSED: fluid::ForceConstants =

@@ -5,10 +5,10 @@ use piola::Vector;
 use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::transport_velocity::{Forces, Slip, SolidsInput, TransportVelocityInput, Wall};
-use piola::schemes::{Observation, Scheme};
+use piola::schemes::{Initial, Observation, Scheme};
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{Solids, change_matter, change_rows, solids_in_box, unit_box};
+use super::support::{Solids, change_matter, solids_in_box, unit_box};
 
 const SIDE: usize = 16;
 /// Layers of each platen, as many as the support of the kernel reaches.
@@ -36,25 +36,21 @@ fn between_platens(
         faces.push(if is_clamp { Faces::new(vec![normal], depth) } else { Faces::default() });
     }
     let (kept, count) = (particles.clone(), particles.len());
+    let (pressure, deviator) = stress;
     let (input, solids) = solids_in_box(particles, SETTINGS, vec![SOLID; 2]);
     let h = kept.spacing[0];
+    let of_block = kept.body.iter().map(|body| if *body == 0 { pressure } else { 0.0 });
     let input = TransportVelocityInput {
         smoothing_length: h,
         faces,
         domain: Domain::new([Some([0.0, 1.0]), None]).expect("the bounds are in order"),
         walls: vec![Wall { body: 1, slip }],
+        initial: Initial { pressure: of_block.collect(), ..input.initial },
         ..input
     };
     let solids = SolidsInput { corrected, ..solids };
     let mut scheme = Solids::new(input, solids).expect("the block can be built");
     let mut state = scheme.initial_state();
-    let (pressure, deviator) = stress;
-    change_rows(&scheme, &mut state, |number, row| {
-        if kept.body[number] == 0 {
-            row[4] = SOLID.state.density + pressure / SOLID.state.wave_speed.powi(2);
-            row[5] = pressure;
-        }
-    });
     change_matter(&scheme, &mut state, |number, row| {
         if kept.body[number] == 0 {
             row[..6].copy_from_slice(&deviator);
@@ -66,7 +62,6 @@ fn between_platens(
     (kept, terms.into_iter().map(|(_, forces)| forces).zip(masses).collect())
 }
 
-// So small that particles have the volumes of their lattice.
 const PRESSED: Stress = (7e-3, [1e-3, -3e-3, 2e-3, 0.0, 0.0, 0.0]);
 const SHEARED: Stress = (7e-3, [1e-3, -3e-3, 2e-3, 0.0, 0.0, 4e-3]);
 

@@ -323,10 +323,11 @@ every = 0.15
 table_every = 0.002
 "#;
 
-/// The floor holds where the piston stood what is thrown at it: it has the faces there that it has alone.
+/// The floor holds where the piston stood what is thrown at it, at up to a quarter of the wave speed, theory (80): it has the
+/// faces there that it has alone.
 #[test]
 fn a_floor_holds_where_a_wall_has_moved_away() {
-    for fall in [1.0, 7.0] {
+    for fall in [1.0, 5.0] {
         let finished = run(PISTON, &[&format!("body.water.initial.velocity=['-1', '-{fall}']")]);
         assert_eq!(finished.summary.outcome, Outcome::Completed);
         assert!(values(&finished, "step.behind").iter().all(|count| *count == 0.0), "{fall}");

@@ -13,7 +13,7 @@ use piola::time::{Outcome, Progress};
 use super::device::device;
 use super::escapes::values;
 
-/// Some of the drops fly over the rim and some fall onto it, three of them before 0.3 s and three after 0.37 s.
+/// Some of the drops fly over the rim and some fall onto it, four of them before 0.35 s and four after 0.46 s.
 const TANK: &str = r#"
 version = 1
 title = "Drops over the rim"
@@ -67,7 +67,7 @@ table_every = 0.01
 fields = ["velocity", "pressure", "density", "surface", "wall"]
 "#;
 
-/// The steps when three drops have been removed and three have not.
+/// The steps when four drops have been removed and four have not.
 const BETWEEN: u64 = 363;
 
 fn tank(device: &str) -> Case {
@@ -120,7 +120,7 @@ fn what_a_device_removes_leaves_the_files_of_the_processor() {
     let of = |name: &str| folder.path().join(name);
     let whole = run("processor", &of("whole"), false, u64::MAX);
     assert_eq!(whole.summary.outcome, Outcome::Completed);
-    assert_eq!(values(&whole, "run.removed"), [6.0]);
+    assert_eq!(values(&whole, "run.removed"), [8.0]);
     // Their energy and momentum leave with them, and nothing else does.
     let last = |name: &str| *values(&whole, name).last().expect("rows");
     assert!(last("energy.removed") < -10.0 && last("energy.balance").abs() < 1e-10);
@@ -130,7 +130,7 @@ fn what_a_device_removes_leaves_the_files_of_the_processor() {
     for computer in computers {
         let begun = run(computer, &of(computer), false, BETWEEN);
         assert_eq!(begun.summary.outcome, Outcome::Interrupted);
-        assert_eq!(values(&begun, "run.removed"), [3.0]);
+        assert_eq!(values(&begun, "run.removed"), [4.0]);
     }
     assert_same(&of("processor"), &of(&device), "broken off");
     for (first, then) in [(0, 1), (1, 0)] {

@@ -173,8 +173,8 @@ fn several_steps_of_the_fluid_are_the_same_resumed_and_on_any_threads() {
 /// A stiffer block, and steps that are too long for it.
 const TOO_LONG: [&str; 4] = [
     "body.block.material={ kind = 'neo_hookean_logarithmic', density = 30.0, young_modulus = 3000.0, poisson_ratio = 0.3 }",
-    "time.cfl=0.2",
-    "system.block.time={ cfl = 1.5 }",
+    "time.cfl=0.1",
+    "system.block.time={ cfl = 1.7 }",
     "time.end=0.2",
 ];
 

@@ -475,5 +475,5 @@ fn another_version_is_named() {
     bytes[12..17].copy_from_slice(b"9.8.7");
     fs::write(&path, bytes).unwrap();
     let error = checkpoint::read(&path, &[0; 32], 1000).unwrap_err().to_string();
-    assert!(error.contains("was written by piola 9.8.7 in format 8, and this is piola"), "{error}");
+    assert!(error.contains("was written by piola 9.8.7 in format 9, and this is piola"), "{error}");
 }

@@ -197,8 +197,9 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         };
         let densities = particles.body.iter().zip(&initial.pressure).map(density);
         let densities: Vec<f64> = densities.collect();
-        let mass = densities.iter().zip(&particles.volume).map(|(rho, volume)| rho * volume);
-        let (walls, masses) = ((is_wall, walls), (at_rest, mass.collect()));
+        let mass = |a: usize| if is_wall[a] { 1.0 } else { densities[a] } * particles.volume[a];
+        let masses = (0..particles.len()).map(mass).collect();
+        let (walls, masses) = ((is_wall, walls), (at_rest, masses));
         let mut common = Common::new(particles, support, settings, walls, masses);
         (common.motion, common.sliding) = (motion, sliding);
         common.body_forces = felt_by_walls(input.body_forces, &input.walls);

@@ -42,8 +42,10 @@ pub struct Common<const D: usize> {
     pub(super) settings: Settings,
     /// By body.
     pub(super) at_rest: Vec<AtRest>,
-    /// Mass by number, kg.
+    /// Mass by number in kg; of a wall the volume that it fills in m^D, if `walls_fill`.
     pub(super) mass: Vec<f64>,
+    /// Whether walls fill their places at any density, or have masses that do not change.
+    pub(super) walls_fill: bool,
     pub(super) is_wall: Vec<bool>,
     /// The particles that are not shifted, by number; empty where all are.
     pub(super) unshifted: Vec<bool>,
@@ -93,6 +95,7 @@ impl<const D: usize> Common<D> {
         let looked_for = if settings.free_surface { count } else { 0 };
         Self {
             mass,
+            walls_fill: true,
             sides: vec![FluidSide::zero(); count],
             forces: vec![Forces::default(); count],
             holds: vec![Hold::default(); touched],
@@ -137,6 +140,7 @@ impl<const D: usize> Common<D> {
             iteration: self.iteration.clone(),
             guard: self.guard.clone(),
             removed: self.removed.clone(),
+            walls_fill: self.walls_fill,
             rows: Some(rows).filter(|_| !support.list().team().is_alone()),
             ..Self::new(self.particles.clone(), support, self.settings, walls, matter)
         }
@@ -213,6 +217,11 @@ impl<const D: usize> Common<D> {
         &self.at_rest[self.particles.body[number] as usize]
     }
 
+    /// Mass in kg of a particle (number) of a density in kg/m^3.
+    pub(super) fn mass_at(&self, number: usize, density: f64) -> f64 {
+        weigh(self.mass[number], self.walls_fill && self.is_wall[number], density)
+    }
+
     /// `1 / (rho0 c)^2` of a particle (number).
     pub(super) fn compliance(&self, number: usize) -> f64 {
         let AtRest { density, wave_speed } = self.at_rest(number);
@@ -283,4 +292,9 @@ impl<const D: usize> Common<D> {
         let held = self.holds.len() * size_of::<Hold<D>>();
         self.support.memory() + self.particles.len() * particle + held
     }
+}
+
+/// Mass in kg of a particle of a density in kg/m^3, from the mass or from the volume that it fills in m^D.
+pub(super) fn weigh(amount: f64, fills: bool, density: f64) -> f64 {
+    if fills { amount * density } else { amount }
 }

@@ -274,7 +274,8 @@ impl<const D: usize> TransportVelocity<D> {
         found: &mut Vec<Vector<D>>,
     ) {
         let at = self.common.columns(state);
-        self.of_walls(walls, |row, number| at.kick[row] * self.common.mass[number], found);
+        let mass = |row: usize, number| self.common.mass_at(number, at.density[row]);
+        self.of_walls(walls, |row, number| at.kick[row] * mass(row, number), found);
     }
 
     /// Finds the accelerations of the start anew, with walls as they have been placed and guided since.

@@ -69,7 +69,7 @@ impl<const D: usize> Common<D> {
             }
             Made::acceleration => values.extend_from_slice(at.kick[number].as_slice()),
             Made::force => {
-                let force = at.kick[number] * self.mass[number];
+                let force = at.kick[number] * self.mass_at(number, at.density[number]);
                 values.extend_from_slice(force.as_slice());
             }
             Made::vorticity => values.push(self.vorticity(place)),
@@ -91,7 +91,7 @@ impl<const D: usize> Common<D> {
                 values.extend_from_slice(normal.as_slice());
             }
             Made::neighbors => values.push(self.neighbor_count(place) as f64),
-            Made::mass => values.push(self.mass[number]),
+            Made::mass => values.push(self.mass_at(number, at.density[number])),
         }
     }
 

@@ -166,7 +166,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
     }
 
     fn mass(&self, index: usize) -> f64 {
-        self.common.mass[index]
+        self.common.mass_at(index, self.common.at_rest(index).density)
     }
 
     fn particle(&self, index: usize) -> Particle {

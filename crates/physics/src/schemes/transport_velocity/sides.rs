@@ -2,18 +2,25 @@
 
 use piola_formulas::pairs::fluid;
 
+use super::common::weigh;
 use super::{Columns, Common};
 use crate::{Vector, parallel};
 
 /// A particle as its neighbours see it.
 pub(super) type Side<const D: usize> = fluid::Side<f64, D>;
 
-/// Takes what a state says of a particle (row) with a mass in kg.
+/// Takes what a state says of a particle (row), with its mass in kg or the volume that it fills in m^D.
 #[inline]
-fn take<const D: usize>(side: &mut Side<D>, mass: f64, at: &Columns<'_, D>, row: usize) {
+fn take<const D: usize>(
+    side: &mut Side<D>,
+    (amount, fills): (f64, bool),
+    at: &Columns<'_, D>,
+    row: usize,
+) {
     side.velocity = at.velocity[row];
     side.deviation = at.deviation[row];
-    side.set(mass, at.density[row], at.pressure[row]);
+    let density = at.density[row];
+    side.set(weigh(amount, fills, density), density, at.pressure[row]);
 }
 
 impl<const D: usize> Common<D> {
@@ -24,10 +31,12 @@ impl<const D: usize> Common<D> {
         }
         self.make_room();
         let (list, mass, at) = (self.support.list(), &self.mass, self.columns(state));
-        let begin = self.first();
+        let (begin, is_wall, walls_fill) = (self.first(), &self.is_wall, self.walls_fill);
         parallel::for_each_chunk(&mut self.sides[..list.owned()], |first, sides| {
             for (side, &number) in sides.iter_mut().zip(&list.numbers()[first..]) {
-                take(side, mass[number as usize], &at, number as usize - begin);
+                let number = number as usize;
+                let fills = walls_fill && is_wall[number];
+                take(side, (mass[number], fills), &at, number - begin);
             }
         });
         self.show_sides();
@@ -48,8 +57,9 @@ impl<const D: usize> Common<D> {
         }
         let (at, begin, owned) = (self.columns(state), self.first(), self.count());
         let (mass, sides) = (&self.mass, &mut self.sides[..owned]);
+        let (is_wall, walls_fill) = (&self.is_wall, self.walls_fill);
         let updated = self.support.update_with(sides, |number, side| {
-            take(side, mass[number], &at, number - begin);
+            take(side, (mass[number], walls_fill && is_wall[number]), &at, number - begin);
             at.position[number - begin]
         });
         self.make_room();

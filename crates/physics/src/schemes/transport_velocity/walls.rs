@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 use piola_formulas::{Number, fluid};
 
+use super::common::weigh;
 use super::{AtRest, Common, Continuum, Slip};
 use crate::geometry::Faces;
 use crate::operators::NeighborBlock;
@@ -88,7 +89,9 @@ impl<const D: usize> Common<D> {
             side.velocity = values.velocity;
             side.deviation = values.deviation;
             let pressure = values.pressure;
-            side.set(self.mass[number], fluid::density(pressure, density, wave_speed), pressure);
+            let density = fluid::density(pressure, density, wave_speed);
+            let fills = self.walls_fill;
+            side.set(weigh(self.mass[number], fills, density), density, pressure);
             matter.set_wall(place, values);
         }
         self.wall_values = values;

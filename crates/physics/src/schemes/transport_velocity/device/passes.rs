@@ -180,6 +180,7 @@ impl<const D: usize> Plan<D> {
             of("density", 1),
             of("pressure", 1),
             of("mass", 1),
+            of("wall", 1),
             own("made_at", D),
         ];
         let reads = [&reads, &*self.copied].concat();
@@ -191,11 +192,12 @@ impl<const D: usize> Plan<D> {
             let position: Vector<D> = take(&mut x);
             let counts = if is_single { space.counts(position.as_slice()).1 } else { Vec::new() };
             let (velocity, deviation) = (take(&mut x), take(&mut x));
-            let (density, pressure, mass) = (one(&mut x), one(&mut x), one(&mut x));
+            let (density, pressure) = (one(&mut x), one(&mut x));
+            let (amount, wall) = (one(&mut x), one(&mut x));
             let zero = Traced::from(0.0);
             let mut side: Side<Traced, D> =
                 Side { velocity, deviation, density, pressure, load: zero, volume: zero };
-            side.set(mass, density, pressure);
+            side.set(if_fluid(wall, amount, amount * density), density, pressure);
             let made_at: Vector<D> = take(&mut x);
             let mut way = zero;
             for axis in 0..D {

@@ -88,7 +88,8 @@ pub(super) struct GhostOf<const D: usize> {
     /// Velocity with which the wall moves, and that of its surface, in m/s.
     motion: Vector<D>,
     pub surface: Vector<D>,
-    mass: Traced,
+    /// The volume that it fills in m^D.
+    volume: Traced,
     at_rest: [Traced; 2],
 }
 
@@ -138,7 +139,7 @@ impl<const D: usize> Plan<D> {
 
     /// What it makes of that, of numbers of these columns, of which those of a side that has been removed are left.
     pub(super) fn ghost(&self, around: &Around<Traced, D>, x: &mut &[Traced]) -> GhostOf<D> {
-        let (mass, sliding) = (one(x), take(x));
+        let (volume, sliding) = (one(x), take(x));
         let faces = Faces::<D>::take(x, self.normals);
         let gravity: Vector<D> = take(x);
         let (motion, lift) = match self.moves {
@@ -154,7 +155,7 @@ impl<const D: usize> Plan<D> {
             at_rest: self.rest(x),
             normal,
             motion,
-            mass,
+            volume,
         }
     }
 
@@ -178,7 +179,8 @@ impl<const D: usize> Plan<D> {
             volume: zero,
         };
         let [density, wave_speed] = ghost.at_rest;
-        side.set(ghost.mass, fluid::density(pressure, density, wave_speed), pressure);
+        let density = fluid::density(pressure, density, wave_speed);
+        side.set(ghost.volume * density, density, pressure);
         let side = flat(&side);
         match self.removes {
             true => {

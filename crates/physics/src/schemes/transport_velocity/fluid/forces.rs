@@ -56,7 +56,6 @@ impl<const D: usize> WeaklyCompressible<D> {
             artificial: common.settings.artificial_viscosity * h * self.fluid.wave_speed,
             dilatation: f64::from(u8::from(corrections.momentum == Momentum::Paper)),
             crowding: crowding.unwrap_or(0.0),
-            specific_volume: self.fluid.density.recip(),
         };
         let kind = match corrections.momentum {
             Momentum::None => NONE,

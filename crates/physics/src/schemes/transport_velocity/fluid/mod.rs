@@ -439,7 +439,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         values: &mut Vec<f64>,
     ) {
         let Some(field) = Own::of(field) else { return };
-        let mass = common.mass[number];
+        let mass = common.mass_at(number, at.density[number]);
         // Of a wall, those of pressure, of viscosity, and the rest.
         let mut push_force = |part: usize| {
             let force = match (self.wall_forces(common, number), part) {

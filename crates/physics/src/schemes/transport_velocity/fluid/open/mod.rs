@@ -319,6 +319,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         for (number, mass) in common.mass.iter_mut().enumerate() {
             *mass = self.fluid.density * common.particles.volume[number];
         }
+        common.walls_fill = false;
     }
 
     /// Puts particles of a state of the start into buffers and into the reserve.
