@@ -249,11 +249,8 @@ fn a_flow_rate_is_shared_by_all_that_comes_in() {
     assert!(worst < 1e-9, "{worst}");
 }
 
-/// A river half a metre deep over a smooth bed, let in with 1 m/s and out at the pressure of its depth, is a uniform stream of
-/// that depth, of a Froude number of 0.45. Its level is known to half a spacing, and what goes out in two ways through it is what
-/// comes in, to a layer of particles.
-#[test]
-fn a_river_keeps_its_level() {
+/// A river half a metre deep over a smooth bed, let in with 1 m/s and out at the pressure of its depth.
+fn river() -> String {
     let body = |name: &str, [low, high]: [[f64; 2]; 2], rest: &str| {
         format!(
             "[[body]]\nname = \"{name}\"\nshape = {{ kind = \"box\", min = {low:?}, max = {high:?} }}\nspacing = 0.05\n\
@@ -262,7 +259,7 @@ fn a_river_keeps_its_level() {
         )
     };
     let depth = "\"2 * 9.81 * (0.5 - y)\"";
-    let text = [
+    [
         "version = 1\ntitle = \"A river\"\ndimension = 2\n".to_owned(),
         body("water", [[0.0, 0.0], [1.0, 0.5]], &format!("initial = {{ velocity = [\"1\", \"0\"], pressure = {depth} }}")),
         body("source", [[-0.2, 0.0], [0.0, 0.5]], "opening = { normal = [1.0, 0.0], velocity = [\"1\", \"0\"] }"),
@@ -272,8 +269,15 @@ fn a_river_keeps_its_level() {
         "[scheme]\nkind = \"transport_velocity\"\nfree_surface = true\n[time]\nend = 2.0\n".to_owned(),
         "[[probe]]\nname = \"level\"\nkind = \"gauge\"\nbody = \"water\"\nfrom = [0.5, 0.0]\nto = [0.5, 1.0]\n".to_owned(),
         "[output]\nevery = 1.0\ntable_every = 0.1\n".to_owned(),
-    ];
-    let finished = run(&text.concat(), &[]);
+    ]
+    .concat()
+}
+
+/// The [`river`] is a uniform stream of its depth, of a Froude number of 0.45. Its level is known to half a spacing, and what
+/// goes out in two ways through it is what comes in, to a layer of particles.
+#[test]
+fn a_river_keeps_its_level() {
+    let finished = run(&river(), &[]);
     assert_eq!(finished.summary.outcome.summary(), "completed");
     for level in values(&finished, "level.elevation") {
         assert!((level - 0.5).abs() < 0.025, "{level}");
@@ -281,6 +285,27 @@ fn a_river_keeps_its_level() {
     for name in ["step.entered", "step.left"] {
         let mass = values(&finished, name).pop().expect("a row");
         assert!((mass - 2.0 * 2.0 * 0.5).abs() < 2.0 * 0.5 * 0.05 * 1.25, "{name} {mass}");
+    }
+}
+
+/// The bed has the mass of its density where the density relaxes, theory (108), and otherwise that of the fluid, which is as
+/// heavy at any pressure, (31).
+#[test]
+fn a_bed_is_as_heavy_as_its_pressure_makes_it_where_the_density_relaxes() {
+    for (set, fills) in [("scheme.free_surface=true", true), ("scheme.density_relaxation=0", false)]
+    {
+        let mut session = session(&river(), &[set]).unwrap_or_else(|error| panic!("{error}"));
+        let mut column = |name| session.column(name).expect("it is there").values;
+        let [walls, masses, densities] = ["wall", "mass", "density"].map(&mut column);
+        let of_fluid = 2.0 * 0.05 * 0.05;
+        let mut heaviest = 0.0_f64;
+        for ((wall, mass), density) in walls.into_iter().zip(masses).zip(densities) {
+            let expected = if wall == 1.0 && fills { density * 0.05 * 0.05 } else { of_fluid };
+            assert!((mass / expected - 1.0).abs() < 1e-12, "{set}: {mass} for {expected} kg");
+            heaviest = heaviest.max(density / 2.0);
+        }
+        // g H/c^2 at the bed, and more in it.
+        assert!(heaviest > 1.0 + 9.81 * 0.5 / 625.0, "{heaviest}");
     }
 }
 

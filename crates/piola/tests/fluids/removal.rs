@@ -155,7 +155,7 @@ fn what_was_removed_is_back_in_an_earlier_state() {
     let [early, expected] = [&mut here, &mut there].map(|session| run_until(session, 0.2));
     assert!(early.1 == expected.1, "before anything is removed");
     let [late, expected] = [&mut here, &mut there].map(|session| run_until(session, 0.35));
-    assert!(late.1 == expected.1, "three are removed");
+    assert!(late.1 == expected.1, "four are removed");
     there.resume(early.0).expect("it is of the same case");
     assert!(run_until(&mut there, 0.35).1 == expected.1, "once more");
 }

@@ -109,7 +109,7 @@ fn a_solid_goes_on_without_what_has_been_removed() {
     let set = [
         "parameters.across=6",
         "parameters.thick=1",
-        "parameters.speed=3000",
+        "parameters.speed=4000",
         "scheme.escaped='remove'",
         "time.max_steps=80",
     ];

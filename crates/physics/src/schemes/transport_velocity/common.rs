@@ -42,10 +42,10 @@ pub struct Common<const D: usize> {
     pub(super) settings: Settings,
     /// By body.
     pub(super) at_rest: Vec<AtRest>,
-    /// Mass by number in kg; of a wall the volume that it fills in m^D, if `walls_fill`.
+    /// Mass by number in kg, or the volume in m^D of what fills it at any density.
     pub(super) mass: Vec<f64>,
-    /// Whether walls fill their places at any density, or have masses that do not change.
-    pub(super) walls_fill: bool,
+    /// By body: whether its particles fill their volumes at any density, as those of walls do.
+    pub(super) fills: Vec<bool>,
     pub(super) is_wall: Vec<bool>,
     /// The particles that are not shifted, by number; empty where all are.
     pub(super) unshifted: Vec<bool>,
@@ -93,9 +93,11 @@ impl<const D: usize> Common<D> {
         let count = support.list().owned();
         let touched = if walls.is_empty() { 0 } else { count };
         let looked_for = if settings.free_surface { count } else { 0 };
+        let mut fills = vec![false; at_rest.len()];
+        walls.iter().for_each(|it| fills[particles.body[it.number as usize] as usize] = true);
         Self {
             mass,
-            walls_fill: true,
+            fills,
             sides: vec![FluidSide::zero(); count],
             forces: vec![Forces::default(); count],
             holds: vec![Hold::default(); touched],
@@ -140,7 +142,7 @@ impl<const D: usize> Common<D> {
             iteration: self.iteration.clone(),
             guard: self.guard.clone(),
             removed: self.removed.clone(),
-            walls_fill: self.walls_fill,
+            fills: self.fills.clone(),
             rows: Some(rows).filter(|_| !support.list().team().is_alone()),
             ..Self::new(self.particles.clone(), support, self.settings, walls, matter)
         }
@@ -217,9 +219,14 @@ impl<const D: usize> Common<D> {
         &self.at_rest[self.particles.body[number] as usize]
     }
 
+    /// Whether a particle (number) fills its volume at any density.
+    pub(super) fn fills(&self, number: usize) -> bool {
+        self.fills[self.particles.body[number] as usize]
+    }
+
     /// Mass in kg of a particle (number) of a density in kg/m^3.
     pub(super) fn mass_at(&self, number: usize, density: f64) -> f64 {
-        weigh(self.mass[number], self.walls_fill && self.is_wall[number], density)
+        weigh(self.mass[number], self.fills(number), density)
     }
 
     /// `1 / (rho0 c)^2` of a particle (number).

@@ -31,11 +31,11 @@ impl<const D: usize> Common<D> {
         }
         self.make_room();
         let (list, mass, at) = (self.support.list(), &self.mass, self.columns(state));
-        let (begin, is_wall, walls_fill) = (self.first(), &self.is_wall, self.walls_fill);
+        let (begin, bodies, fills) = (self.first(), &self.particles.body, &self.fills);
         parallel::for_each_chunk(&mut self.sides[..list.owned()], |first, sides| {
             for (side, &number) in sides.iter_mut().zip(&list.numbers()[first..]) {
                 let number = number as usize;
-                let fills = walls_fill && is_wall[number];
+                let fills = fills[bodies[number] as usize];
                 take(side, (mass[number], fills), &at, number - begin);
             }
         });
@@ -57,9 +57,9 @@ impl<const D: usize> Common<D> {
         }
         let (at, begin, owned) = (self.columns(state), self.first(), self.count());
         let (mass, sides) = (&self.mass, &mut self.sides[..owned]);
-        let (is_wall, walls_fill) = (&self.is_wall, self.walls_fill);
+        let (bodies, fills) = (&self.particles.body, &self.fills);
         let updated = self.support.update_with(sides, |number, side| {
-            take(side, (mass[number], walls_fill && is_wall[number]), &at, number - begin);
+            take(side, (mass[number], fills[bodies[number] as usize]), &at, number - begin);
             at.position[number - begin]
         });
         self.make_room();

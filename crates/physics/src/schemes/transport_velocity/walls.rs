@@ -3,7 +3,6 @@
 use nalgebra::SVector;
 use piola_formulas::{Number, fluid};
 
-use super::common::weigh;
 use super::{AtRest, Common, Continuum, Slip};
 use crate::geometry::Faces;
 use crate::operators::NeighborBlock;
@@ -85,13 +84,13 @@ impl<const D: usize> Common<D> {
             let number = wall.number as usize;
             let place = self.place_of_wall(wall);
             let AtRest { density, wave_speed } = *self.at_rest(number);
+            let pressure = values.pressure;
+            let density = fluid::density(pressure, density, wave_speed);
+            let mass = self.mass_at(number, density);
             let side = &mut self.sides[place];
             side.velocity = values.velocity;
             side.deviation = values.deviation;
-            let pressure = values.pressure;
-            let density = fluid::density(pressure, density, wave_speed);
-            let fills = self.walls_fill;
-            side.set(weigh(self.mass[number], fills, density), density, pressure);
+            side.set(mass, density, pressure);
             matter.set_wall(place, values);
         }
         self.wall_values = values;

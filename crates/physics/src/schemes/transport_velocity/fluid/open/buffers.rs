@@ -38,7 +38,7 @@ impl<const D: usize> WeaklyCompressible<D> {
             }
         });
         let Fluid { density, wave_speed, .. } = self.fluid;
-        let impedance = density * wave_speed;
+        let (impedance, relaxes) = (density * wave_speed, common.settings.relaxes());
         let positions = common.support.list().positions();
         terms.clear();
         terms.extend(members.iter().zip(&*seen).filter_map(|(&number, seen)| {
@@ -86,7 +86,11 @@ impl<const D: usize> WeaklyCompressible<D> {
             side.velocity = seen.entering.unwrap_or(side.velocity) - sound;
             side.deviation = Vector::zeros();
             let mass = common.mass[number as usize];
-            side.set(mass, fluid::density(pressure, density, wave_speed), pressure);
+            let at_rest = density;
+            let density = fluid::density(pressure, density, wave_speed);
+            // They stand as far apart as they came in, under any pressure.
+            let mass = if relaxes { mass * density / at_rest } else { mass };
+            side.set(mass, density, pressure);
             shear[place] = side.velocity;
         }
         common.show_sides();

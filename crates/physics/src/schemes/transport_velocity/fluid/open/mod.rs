@@ -315,11 +315,16 @@ impl<const D: usize> WeaklyCompressible<D> {
         self.open = Open::new(boundaries, &common.particles.position);
         common.removed = vec![false; count];
         self.shear = vec![Vector::zeros(); count];
-        // Those that are not there yet have to be as heavy as those that they follow.
-        for (number, mass) in common.mass.iter_mut().enumerate() {
-            *mass = self.fluid.density * common.particles.volume[number];
+        // Where the density does not relax to that of the places, walls are as heavy as the fluid.
+        if !common.settings.relaxes() {
+            common.fills.fill(false);
         }
-        common.walls_fill = false;
+        // Those that are not there yet have to be as heavy as those that they follow.
+        for number in 0..common.mass.len() {
+            if !common.fills(number) {
+                common.mass[number] = self.fluid.density * common.particles.volume[number];
+            }
+        }
     }
 
     /// Puts particles of a state of the start into buffers and into the reserve.
