@@ -141,18 +141,45 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
 {
     const NEEDS: Needs = if CROWDING { Needs::Both } else { Needs::Slope };
 
-    /// Adds what the corrections and the shifting need.
+    /// Adds the forces of a neighbour of the same fluid other than its pressure.
     #[inline(always)]
-    fn carry<T: Number>(
+    pub(super) fn resist<T: Number>(
         &self,
-        me: &Side<T, D>,
-        other: &Side<T, D>,
+        [me, other]: [&Side<T, D>; 2],
+        pair: &Of<MovingPair<D>, T>,
+        sums: &mut ForceSums<T, D>,
+    ) {
+        let slope = other.mass() * pair.slope;
+        let jump = difference(&me.velocity, &other.velocity);
+        let densities = me.density + other.density;
+        let scale = fluid::exchange_scale(densities, pair.square, self.0.softening);
+        let ForceConstants { viscous, viscosity, .. } = self.0;
+        let (way, exchange) = viscous.force(viscosity, &jump, pair, [slope, densities, scale]);
+        for i in 0..D {
+            sums.viscosity[i] += way[i] * exchange;
+        }
+        if ARTIFICIAL {
+            let approach = dot(&jump, &pair.separation);
+            let strength = T::from(self.0.artificial);
+            let push = slope * fluid::artificial_viscosity(strength, approach, scale);
+            for i in 0..D {
+                sums.artificial_viscosity[i] -= pair.separation[i] * push;
+            }
+        }
+    }
+
+    /// Adds what the corrections and the shifting need, with the separation by which gradients at the particle are taken.
+    #[inline(always)]
+    pub(super) fn carry<T: Number>(
+        &self,
+        [me, other]: [&Side<T, D>; 2],
+        arm: &Of<Components<D>, T>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
     ) {
         let slope = other.volume * pair.slope;
         if CORRECTS != NONE {
-            let mine = dot(&me.deviation, &pair.separation) * slope;
+            let mine = dot(&me.deviation, arm) * slope;
             let jump = difference(&me.velocity, &other.velocity);
             if CORRECTS == FULL {
                 for i in 0..D {
@@ -197,27 +224,28 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
     ) {
-        let slope = other.mass() * pair.slope;
-        let jump = difference(&me.velocity, &other.velocity);
-        let densities = me.density + other.density;
-        let scale = fluid::exchange_scale(densities, pair.square, self.0.softening);
-        let ForceConstants { viscous, viscosity, .. } = self.0;
-        let (way, exchange) = viscous.force(viscosity, &jump, pair, [slope, densities, scale]);
-        let pressure = slope * (me.load + other.load);
+        let pressure = pressed([me, other], pair, other.mass() * pair.slope);
         for i in 0..D {
-            sums.pressure[i] -= pair.separation[i] * pressure;
-            sums.viscosity[i] += way[i] * exchange;
+            sums.pressure[i] -= pressure[i];
         }
-        if ARTIFICIAL {
-            let approach = dot(&jump, &pair.separation);
-            let strength = T::from(self.0.artificial);
-            let push = slope * fluid::artificial_viscosity(strength, approach, scale);
-            for i in 0..D {
-                sums.artificial_viscosity[i] -= pair.separation[i] * push;
-            }
-        }
-        self.carry(me, other, pair, sums);
+        self.resist([me, other], pair, sums);
+        self.carry([me, other], &pair.separation, pair, sums);
     }
+}
+
+/// `(p_a / rho_a^2 + p_b / rho_b^2) grad W_ab` of theory (22) with a multiple of the slope of the kernel.
+#[inline(always)]
+fn pressed<T: Number, const D: usize>(
+    [me, other]: [&Side<T, D>; 2],
+    pair: &Of<MovingPair<D>, T>,
+    slope: T,
+) -> Of<Components<D>, T> {
+    let mut push = pair.separation;
+    let pressure = slope * (me.load + other.load);
+    for i in 0..D {
+        push[i] *= pressure;
+    }
+    push
 }
 
 /// What walls do to a fluid, in the sums of its [`Forces`]. A side has besides the velocity of the
@@ -243,9 +271,8 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
         sums: &mut ForceSums<T, D>,
     ) {
         let wall = Wall::of(&self.0.0);
-        let jump = difference(&me.velocity, shear);
-        wall.push([me, other], &jump, pair, &mut sums.walls);
-        self.0.carry(me, other, pair, sums);
+        wall.act([me, other], &difference(&me.velocity, shear), pair, &mut sums.walls);
+        self.0.carry([me, other], &pair.separation, pair, sums);
     }
 }
 
@@ -269,21 +296,33 @@ impl<const D: usize> Wall<D> {
 
     /// Adds the force of another particle, one of the two of a wall, where velocities differ by a `jump` in m/s.
     #[inline(always)]
-    pub fn push<T: Number>(
+    pub fn act<T: Number>(
         &self,
         [me, other]: [&Side<T, D>; 2],
         jump: &Of<Components<D>, T>,
         pair: &Of<MovingPair<D>, T>,
         sum: &mut Of<Components<D>, T>,
     ) {
+        let pressure = pressed([me, other], pair, pair.slope);
+        self.push([me, other], [jump, &pressure], pair, sum);
+    }
+
+    /// The same with the pressure of the two times the gradient of the kernel.
+    #[inline(always)]
+    pub(super) fn push<T: Number>(
+        &self,
+        [me, other]: [&Side<T, D>; 2],
+        [jump, pressure]: [&Of<Components<D>, T>; 2],
+        pair: &Of<MovingPair<D>, T>,
+        sum: &mut Of<Components<D>, T>,
+    ) {
         let densities = me.density + other.density;
         let scale = fluid::exchange_scale(densities, pair.square, self.softening);
-        let pressure = pair.slope * (me.load + other.load);
         let mass = other.mass();
         let factors = [pair.slope, densities, scale];
         let (way, exchange) = self.viscous.force(self.viscosity, jump, pair, factors);
         for i in 0..D {
-            sum[i] += (way[i] * exchange - pair.separation[i] * pressure) * mass;
+            sum[i] += (way[i] * exchange - pressure[i]) * mass;
         }
     }
 }
@@ -303,7 +342,7 @@ impl<const D: usize> PairLaw for Wall<D> {
         pair: &Of<MovingPair<D>, T>,
         sum: &mut Of<Components<D>, T>,
     ) {
-        self.push([me, other], &difference(shear, &other.velocity), pair, sum);
+        self.act([me, other], &difference(shear, &other.velocity), pair, sum);
     }
 }
 
@@ -314,6 +353,26 @@ pub struct RateConstants {
     pub softening: f64,
     /// `alpha h c / 8` of CTVF (24) in m^2/s.
     pub diffusivity: f64,
+}
+
+impl RateConstants {
+    /// What of the pressure is exchanged with a neighbour, in Pa/s: of E_a in theory (23).
+    #[inline(always)]
+    pub(super) fn exchange<const FALLS: bool, T: Number, const D: usize>(
+        &self,
+        [me, other]: [&Side<T, D>; 2],
+        half_force: &Of<Components<D>, T>,
+        pair: &Of<MovingPair<D>, T>,
+    ) -> T {
+        let jump = other.pressure - me.pressure;
+        let densities = me.density + other.density;
+        let scale = fluid::exchange_scale(densities, pair.square, self.softening);
+        let slope = other.mass() * pair.slope;
+        let exchange = fluid::diffusion(self.diffusivity, pair.square, slope, scale);
+        // In a fluid at rest this is the difference of pressure between the two, which must not diffuse.
+        let at_rest = if FALLS { dot(half_force, &pair.separation) * densities } else { T::zero() };
+        exchange * (jump + at_rest)
+    }
 }
 
 /// The rates of the pressure, CTVF (23), (26), theory (21): `CORRECTS` says whether the
@@ -367,12 +426,6 @@ impl<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool>
         if CORRECTS {
             sums.pressure_transport += dot(&me.deviation, &pair.separation) * slope * jump;
         }
-        let densities = me.density + other.density;
-        let scale = fluid::exchange_scale(densities, pair.square, self.0.softening);
-        let slope = other.mass() * pair.slope;
-        let exchange = fluid::diffusion(self.0.diffusivity, pair.square, slope, scale);
-        // In a fluid at rest this is the difference of pressure between the two, which must not diffuse.
-        let at_rest = if FALLS { dot(half_force, &pair.separation) * densities } else { T::zero() };
-        sums.pressure_diffusion -= exchange * (jump + at_rest);
+        sums.pressure_diffusion -= self.0.exchange::<FALLS, T, D>([me, other], half_force, pair);
     }
 }

@@ -5,6 +5,7 @@
 //! one neighbour. It is generic over [`Number`], so that the same body sums plain numbers, four at once
 //! ([`Lanes4`](crate::Lanes4)), derivatives, or text for a device. The loops over neighbours are not here.
 
+pub mod corrected;
 pub mod fit;
 pub mod fluid;
 mod record;
@@ -144,4 +145,27 @@ pub(crate) fn applied<T: Number, const D: usize>(
         product[i] = sum;
     }
     product
+}
+
+/// Takes an area in m^(D-2) times `r_ab (x) r_ab` from the entries with `i <= j` of a moment.
+#[inline(always)]
+pub(crate) fn add_moment<T: Number, const D: usize>(
+    pair: &Of<MovingPair<D>, T>,
+    area: T,
+    moment: &mut nalgebra::SMatrix<T, D, D>,
+) {
+    for i in 0..D {
+        let arm = pair.separation[i] * area;
+        for j in i..D {
+            moment[(i, j)] -= arm * pair.separation[j];
+        }
+    }
+}
+
+/// The symmetric matrix of which the entries with `i <= j` are filled.
+#[inline]
+pub(crate) fn symmetric<T: Number, const D: usize>(
+    upper: &nalgebra::SMatrix<T, D, D>,
+) -> nalgebra::SMatrix<T, D, D> {
+    nalgebra::SMatrix::from_fn(|i, j| upper[(i.min(j), i.max(j))])
 }

@@ -2,7 +2,8 @@
 
 use super::fluid::{FluidSide, Side};
 use super::{
-    Components, Many, MovingPair, Of, One, PairLaw, Record, Square, difference, dot, record,
+    Components, Many, MovingPair, Of, One, PairLaw, Record, Square, add_moment, difference, dot,
+    record, symmetric,
 };
 use crate::kernels::Needs;
 use crate::{Number, fluid, tensor};
@@ -440,13 +441,7 @@ impl<const D: usize> PairLaw for Moments<D> {
         pair: &Of<MovingPair<D>, T>,
         sums: &mut Of<Square<D>, T>,
     ) {
-        let area = *own * other.volume * pair.slope;
-        for i in 0..D {
-            let arm = pair.separation[i] * area;
-            for j in i..D {
-                sums[(i, j)] -= arm * pair.separation[j];
-            }
-        }
+        add_moment(pair, *own * other.volume * pair.slope, sums);
     }
 }
 
@@ -458,7 +453,7 @@ const LEAST: f64 = 0.1;
 /// which those with `i <= j` are filled; the identity where it cannot be trusted.
 #[inline]
 pub fn correction<T: Number, const D: usize>(sums: &Of<Square<D>, T>) -> Of<Square<D>, T> {
-    let sum = Of::<Square<D>, T>::from_fn(|i, j| sums[(i.min(j), i.max(j))]);
+    let sum = symmetric(sums);
     let determinant = tensor::determinant(&sum);
     let inverse = tensor::cofactor(&sum).transpose() / determinant;
     let is_finite = |number: &T| number.abs().at_most(T::from(f64::MAX));

@@ -314,3 +314,127 @@ fn the_artificial_viscosity_is_one_between_layers_that_slide() {
     layers_that_slide::<2>();
     layers_that_slide::<3>();
 }
+
+const CORRECTED: Settings = Settings { gradients: Settings::CORRECTED.gradients, ..SETTINGS };
+
+/// With corrected gradients every term keeps its sign and its order.
+fn corrected_in_dimension<const D: usize>() {
+    let corrected = &Found::<D>::with(CORRECTED);
+    second_order::<D, 1>("corrected div u", corrected, |x, rates, _| {
+        (number(rates.divergence), number(divergence(velocity, x)))
+    });
+    second_order::<D, 1>("corrected d . grad p", corrected, |x, rates, _| {
+        let expected = vector(deviation, x).dot(&PRESSURE.gradient(x));
+        (number(rates.pressure_transport), number(expected))
+    });
+    second_order::<D, D>("corrected grad p / rho", corrected, |x, _, forces| {
+        (forces.pressure, PRESSURE.gradient(x) / -DENSITY.value(x))
+    });
+    second_order::<D, D>("corrected (d . grad) u", corrected, |x, _, forces| {
+        let d = vector(deviation, x);
+        (forces.transport, Vector::from_fn(|i, _| velocity(i).gradient(x).dot(&d)))
+    });
+    // The diffusivity is proportional to h, and what is left of a smooth difference of velocities to its third power, of
+    // which the sum over pairs keeps two: the third order in all, where disorder does not matter.
+    let [coarse, fine] = [0, 1].map(|k| {
+        let found = corrected.0[k].iter();
+        found.map(|(_, _, forces)| forces.artificial_viscosity.norm()).sum::<f64>()
+            / corrected.0[k].len() as f64
+    });
+    println!("velocity diffusion in {D}D: {coarse:.3e} {fine:.3e}");
+    assert!((5.0..9.0).contains(&(coarse / fine)), "{coarse} to {fine}");
+}
+
+#[test]
+fn corrected_terms_have_their_signs_and_orders() {
+    corrected_in_dimension::<2>();
+    corrected_in_dimension::<3>();
+}
+
+/// Linear fields on particles in disorder, away from the periodic boundaries, across which they are not linear.
+fn linear_fields<const D: usize>() {
+    let slope = |i: usize, j: usize| 0.3 + 0.7 * i as f64 - 0.4 * j as f64;
+    let fields = |x: &Vector<D>| Sample {
+        velocity: Vector::from_fn(|i, _| (0..D).map(|j| slope(i, j) * x[j]).sum()),
+        deviation: Vector::from_fn(|i, _| 0.2 - 0.1 * i as f64),
+        density: FLUID.density,
+        pressure: (0..D).map(|j| slope(1, j) * x[j]).sum(),
+    };
+    let side = if D == 3 { 14 } else { 24 };
+    let found = terms_of(side, 0.2, CORRECTED, fields);
+    let is_inside = |x: &Vector<D>| x.iter().all(|x| (0.3..0.7).contains(x));
+    let inside: Vec<_> = found.iter().filter(|(x, _, _)| is_inside(x)).collect();
+    assert!(!inside.is_empty());
+    for (x, rates, forces) in inside {
+        let d = fields(x).deviation;
+        let trace: f64 = (0..D).map(|i| slope(i, i)).sum();
+        assert!((rates.divergence - trace).abs() < 1e-12, "{D}D: {}", rates.divergence);
+        let carried: f64 = (0..D).map(|j| slope(1, j) * d[j]).sum();
+        assert!((rates.pressure_transport - carried).abs() < 1e-12, "{D}D");
+        let along = Vector::from_fn(|i, _| (0..D).map(|j| slope(i, j) * d[j]).sum());
+        assert!((forces.transport - along).norm() < 1e-12, "{D}D: {}", forces.transport);
+        // Nothing is left of linear differences, so that nothing of them diffuses. The sum reaches two supports, which in
+        // 3D is beyond the boundaries.
+        let diffuses = forces.artificial_viscosity.norm();
+        assert!(D == 3 || diffuses < 1e-11, "{diffuses}");
+    }
+}
+
+#[test]
+fn corrected_gradients_of_a_fluid_are_exact_for_linear_fields() {
+    linear_fields::<2>();
+    linear_fields::<3>();
+}
+
+/// In disorder, `sum m a . u = sum V p div u` of the pressure, and neither pressure nor diffusion changes the momentum.
+fn conjugate<const D: usize>() {
+    let fields = |x: &Vector<D>| Sample { density: FLUID.density, ..manufactured(x) };
+    let side = if D == 3 { 12 } else { 20 };
+    let found = terms_of(side, 0.2, CORRECTED, fields);
+    let [mut power, mut taken, mut size] = [0.0; 3];
+    let mut impulses = [Vector::<D>::zeros(); 2];
+    let mut pushes = 0.0;
+    for (x, rates, forces) in &found {
+        let Sample { velocity, pressure, .. } = fields(x);
+        let (gained, lost) =
+            (forces.pressure.dot(&velocity) * FLUID.density, pressure * rates.divergence);
+        power += gained;
+        taken += lost;
+        size += gained.abs() + lost.abs();
+        impulses[0] += forces.pressure;
+        impulses[1] += forces.artificial_viscosity;
+        pushes += forces.pressure.norm() + forces.artificial_viscosity.norm();
+    }
+    assert!((power - taken).abs() < 1e-13 * size, "{D}D: {power} and {taken} of {size}");
+    for impulse in impulses {
+        assert!(impulse.norm() < 1e-13 * pushes, "{D}D: {impulse} of {pushes}");
+    }
+}
+
+/// Of velocities that differ from particle to particle at random the diffusion takes energy.
+#[test]
+fn what_is_not_linear_of_velocities_dies_out() {
+    let random = |x: &Vector<2>, k: f64| (1e4 * (x[0] + k * x[1])).sin();
+    let fields = |x: &Vector<2>| Sample {
+        velocity: Vector::<2>::new(random(x, 2.7), random(x, 9.1)),
+        deviation: Vector::zeros(),
+        density: FLUID.density,
+        pressure: 0.0,
+    };
+    let found = terms_of(24, 0.2, CORRECTED, fields);
+    let power = |(x, _, forces): &(Vector<2>, Rates, Forces<2>)| {
+        forces.artificial_viscosity.dot(&fields(x).velocity)
+    };
+    let [mut power_of_all, mut taken] = [0.0; 2];
+    for one in &found {
+        power_of_all += power(one);
+        taken += power(one).min(0.0);
+    }
+    assert!(power_of_all < 0.0 && power_of_all < 0.9 * taken, "{power_of_all} of {taken}");
+}
+
+#[test]
+fn corrected_pressure_forces_are_conjugate_to_the_divergence() {
+    conjugate::<2>();
+    conjugate::<3>();
+}

@@ -173,3 +173,23 @@ fn water_under_waves_keeps_its_volume() {
     assert!(with.abs() < 0.005, "the centre of mass has sunk by {with} m");
     assert!(without > 0.005, "by {without} m without");
 }
+
+/// What does not go with corrected gradients is said.
+#[test]
+fn what_does_not_go_with_corrected_gradients_is_refused() {
+    let corrected = "scheme.corrected_gradients=true";
+    for (set, what) in [
+        (
+            &[corrected, "scheme.corrections='stress'"][..],
+            "need `corrections = \"full\"`, not `stress`",
+        ),
+        (
+            &[corrected, "scheme.density='summation'", "scheme.pressure='state_equation'"],
+            "nothing uses a divergence",
+        ),
+        (&["scheme.velocity_diffusion=0.1"], "without `corrected_gradients = true`"),
+    ] {
+        let text = refusal(TANK, set);
+        assert!(text.contains(what), "{text}");
+    }
+}

@@ -207,6 +207,11 @@ fn what_a_device_cannot_do_is_refused_by_name() {
         ),
         ("ctvf/taylor-green", &["scheme.shifting='ipst'"], "the stage `iterate` does not run"),
         (
+            "ctvf/still-water",
+            &["scheme.corrected_gradients=true"],
+            "corrected gradients of a fluid do",
+        ),
+        (
             "ctvf/taylor-green",
             &["scheme.pressure='state_equation'"],
             "by the law of state does not",

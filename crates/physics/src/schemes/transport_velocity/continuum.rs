@@ -181,6 +181,9 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// Makes room for what neighbours see of places, of which a new list may have more.
     fn make_room(&mut self, _common: &Common<D>) {}
 
+    /// Finds what its own fields need besides sides.
+    fn prepare_fields(&mut self, _common: &Common<D>) {}
+
     /// Takes the values of the wall particle at `place`.
     fn set_wall(&mut self, place: usize, values: &WallValues<D>);
 

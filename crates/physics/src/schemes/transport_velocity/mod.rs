@@ -69,8 +69,8 @@ pub use forces::{Forces, Rates};
 pub(crate) use interface::{Guide, WallSelection};
 pub use levels::{Levels, refined};
 pub use settings::{
-    AtSurface, Corrections, DensityRule, Divergence, Fluid, Momentum, PressureRule, Settings,
-    Shifting, Slip, Viscous,
+    AtSurface, Corrections, DensityRule, Divergence, Fluid, Gradients, Momentum, PressureRule,
+    Settings, Shifting, Slip, Viscous,
 };
 pub use solids::{
     Contact, DESCRIPTION as SOLIDS, Heat, Hypoelastic, Solid, SolidRates, SolidsInput,

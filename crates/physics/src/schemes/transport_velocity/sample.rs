@@ -20,12 +20,12 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         let mut state = state.to_vec();
         for pass in self.accelerate.passes().to_vec() {
             match pass {
-                Pass::Load | Pass::Walls | Pass::BodyForces | Pass::Own(_) => {}
-                Pass::Forces => self.matter.find_rates(&self.common, time),
+                Pass::Load | Pass::Walls | Pass::Forces | Pass::BodyForces | Pass::Own(_) => {}
                 _ => continue,
             }
             self.run(pass, instant, &mut state, &mut totals);
         }
+        self.matter.find_rates(&self.common, time);
     }
 
     /// The terms of the equations at a state, particle by particle, for those who want to see
@@ -45,6 +45,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         if stage == 1 {
             self.load(state);
             self.common.wall_pass(&mut self.matter, time);
+            self.matter.prepare_fields(&self.common);
         } else if self.common.settings.free_surface {
             self.common.opening_pass();
             self.common.find_surfaces();

@@ -129,6 +129,19 @@ pub enum AtSurface {
     Along,
 }
 
+/// How the gradients of fluids are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gradients {
+    /// By plain sums, theory (20) to (22).
+    Plain,
+    /// Exactly for linear fields, with the forces that are conjugate to them, theory (109) to (112). The corrections for
+    /// the transport velocity are then [`Corrections::FULL`], whatever is asked for.
+    Corrected {
+        /// The factor alpha of the diffusion of what velocities have beyond their linear part.
+        velocity_diffusion: f64,
+    },
+}
+
 /// Numerical settings of the formulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -151,6 +164,8 @@ pub struct Settings {
     pub free_surface: bool,
     /// How particles are shifted there.
     pub at_surface: AtSurface,
+    /// How the gradients of fluids are taken.
+    pub gradients: Gradients,
 }
 
 impl Settings {
@@ -165,7 +180,21 @@ impl Settings {
         density_relaxation: 0.002,
         free_surface: false,
         at_surface: AtSurface::Held,
+        gradients: Gradients::Plain,
     };
+
+    /// Those that differ with corrected gradients: particles are then so evenly distributed that their summation density
+    /// may act sooner.
+    pub const CORRECTED: Self = Self {
+        density_relaxation: 0.01,
+        gradients: Gradients::Corrected { velocity_diffusion: 0.5 },
+        ..Self::FLUID
+    };
+
+    /// Whether gradients of fluids are corrected.
+    pub(super) fn corrects_gradients(&self) -> bool {
+        self.gradients != Gradients::Plain
+    }
 
     /// Whether pressures follow from densities.
     pub(super) fn is_algebraic(&self) -> bool {

@@ -8,7 +8,8 @@ use crate::case::model::{
     Body, Boundary, Material, OpenFlow, Opening, Profile, Region, TransportVelocity, Wall,
 };
 use crate::schemes::transport_velocity::{
-    AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip, Viscous,
+    AtSurface, Contact, Corrections, DensityRule, Gradients, PressureRule, Settings, Shifting,
+    Slip, Viscous,
 };
 
 /// Factor of the diffusivity of the pressure, CTVF (24), of fluids and of solids, unless the case has
@@ -16,8 +17,7 @@ use crate::schemes::transport_velocity::{
 const DIFFUSION: [f64; 2] = [0.5, 0.001];
 
 /// Keys of the scheme that say what solids do.
-const OF_SOLIDS: [&str; 4] =
-    ["corrected_gradients", "contact", "contact_stiffness", "self_contact"];
+const OF_SOLIDS: [&str; 3] = ["contact", "contact_stiffness", "self_contact"];
 
 impl Reader<'_, '_> {
     /// Settings of the scheme `transport_velocity`.
@@ -31,7 +31,14 @@ impl Reader<'_, '_> {
             self.meaningless(record, "damping", "for solids");
             self.meaningless(record, "density_relaxation", "for solids");
             self.meaningless(record, "refine", "for solids");
+            self.meaningless(record, "velocity_diffusion", "for solids");
         }
+        let corrected_gradients = record.boolean("corrected_gradients").unwrap_or(false);
+        let of_fluid = match corrected_gradients && !is_solid {
+            true => Settings::CORRECTED,
+            false => Settings::FLUID,
+        };
+        let gradients = self.gradients(record, of_fluid)?;
         let relaxes = record.boolean("free_surface") == Some(true);
         if !is_solid && !relaxes {
             self.meaningless(record, "density_relaxation", "without `free_surface = true`");
@@ -96,7 +103,8 @@ impl Reader<'_, '_> {
                 },
                 artificial_viscosity: record.number("artificial_viscosity")?.value,
                 density_relaxation: (record.number("density_relaxation"))
-                    .map_or(Settings::FLUID.density_relaxation, |it| it.value),
+                    .map_or(of_fluid.density_relaxation, |it| it.value),
+                gradients,
                 free_surface: record.boolean("free_surface").unwrap_or(is_solid),
                 at_surface: match record.text("surface_shifting").as_ref().map(|it| it.as_str()) {
                     Some("held") => AtSurface::Held,
@@ -106,7 +114,7 @@ impl Reader<'_, '_> {
             },
             contact,
             self_contact: record.number("self_contact"),
-            corrected_gradients: record.boolean("corrected_gradients").unwrap_or(false),
+            corrected_gradients,
             damping: record.expression("damping").map(|rate| {
                 Located::new(rate, record.key_place("damping").unwrap_or(record.place))
             }),
@@ -118,6 +126,41 @@ impl Reader<'_, '_> {
 }
 
 impl Reader<'_, '_> {
+    /// How gradients are taken.
+    fn gradients(&mut self, record: &Record, settings: Settings) -> Option<Gradients> {
+        let Gradients::Corrected { velocity_diffusion } = settings.gradients else {
+            if !self.names.current.is_solid {
+                let reason = "without `corrected_gradients = true`";
+                self.meaningless(record, "velocity_diffusion", reason);
+            }
+            return Some(Gradients::Plain);
+        };
+        let corrections = record.text("corrections")?;
+        if corrections.as_str() != "full" {
+            let message = format!(
+                "corrected gradients need `corrections = \"full\"`, not `{}`",
+                *corrections
+            );
+            let label = "does not go with `corrected_gradients`";
+            let problem = Problem::new(corrections.place, message, label);
+            return self.refuse(problem.help("remove it"));
+        }
+        let density = record.text("density")?;
+        let is_algebraic =
+            record.text("pressure").is_some_and(|it| it.as_str() == "state_equation");
+        if density.as_str() == "summation" && is_algebraic {
+            let message = "with a density by summation and a pressure by the equation of state nothing uses a divergence, \
+                           so that the forces have none to be conjugate to";
+            let label = "does not go with `corrected_gradients`";
+            let problem = Problem::new(density.place, message, label);
+            return self
+                .refuse(problem.help("remove `density`, or `pressure`, or `corrected_gradients`"));
+        }
+        let diffusion = record.number("velocity_diffusion");
+        let velocity_diffusion = diffusion.map_or(velocity_diffusion, |it| it.value);
+        Some(Gradients::Corrected { velocity_diffusion })
+    }
+
     /// What makes a body the buffer of an open boundary.
     pub(super) fn opening(&mut self, record: &Record) -> Option<Located<Opening>> {
         const FLOWS: [&str; 3] = ["velocity", "flow_rate", "pressure"];

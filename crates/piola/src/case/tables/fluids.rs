@@ -46,7 +46,7 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "density_relaxation",
             Kind::Number(Interval::between(0.0, 1.0)),
             "1",
-            Derived("0.002; no meaning for solids"),
+            Derived("0.002; 0.01 with `corrected_gradients`; no meaning for solids"),
             "rate in units of c/h at which the density of a fluid with `free_surface` relaxes to the summation density, with `spst`, theory (108)",
         ),
         key(
@@ -130,8 +130,15 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "corrected_gradients",
             Kind::Boolean,
             "",
-            Derived("false; no meaning for fluids"),
-            "whether velocity gradients of solids are exact for linear fields, with the conjugate momentum equation",
+            Default("false"),
+            "whether gradients are exact for linear fields away from free surfaces of fluids, with the conjugate momentum equation: for solids theory (74), for fluids (109) to (113)",
+        ),
+        key(
+            "velocity_diffusion",
+            Kind::Number(Interval::between(0.0, 1.0)),
+            "1",
+            Derived("0.5 with `corrected_gradients` of fluids; no meaning otherwise"),
+            "factor of the diffusivity of what velocity differences have beyond their linear part, theory (112)",
         ),
         key(
             "contact",

@@ -64,6 +64,9 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
         if matter.is_damped() {
             return refuse("damping", "run it on the processor");
         }
+        if common.settings.corrects_gradients() {
+            return refuse("corrected gradients of a fluid", "run it on the processor");
+        }
         let follows = common.settings.density == DensityRule::Continuity;
         let (rate_constants, rate_kind) = matter.rate_law(common);
         let (force_constants, force_kind) = matter.force_law(common);

@@ -25,23 +25,27 @@ impl<const D: usize> WeaklyCompressible<D> {
     }
 
     /// Fills by how much the summation density is above the density, theory (108): zero on and near free surfaces, where the
-    /// sum is no density, and in the buffers of open boundaries, whose state is prescribed.
+    /// sum is no density, unless gradients are corrected and it is above all the same, theory (113); and in the buffers of open
+    /// boundaries, whose state is prescribed.
     pub(super) fn find_excess(&self, common: &Common<D>, state: &mut [f64]) {
         let (scale, centre) = (self.lattice_sum.recip(), common.support.centre());
         let (places, h) = (common.support.list().places(), common.support.smoothing_length());
         let (_, tail) = common.parts(state);
         let (StoredMut { excess, opening, .. }, _) = StoredMut::<D>::of(tail, common.count());
-        let opening = &*opening;
+        let (opening, corrected) = (&*opening, common.settings.corrects_gradients());
         parallel::for_each_chunk(excess, |first, rows| {
             for (row, excess) in (first..).zip(rows) {
                 let place = places[row] as usize;
-                let is_within = common.openings[place].reach >= h && common.active(place).is_some();
-                *excess = match is_within && opening[row] == 0.0 {
-                    true => {
-                        let side = &common.sides[place];
-                        let summed = side.mass() * centre + common.forces[place].filling;
-                        summed * scale - side.density
-                    }
+                if common.active(place).is_none() || opening[row] != 0.0 {
+                    *excess = 0.0;
+                    continue;
+                }
+                let side = &common.sides[place];
+                let summed = side.mass() * centre + common.forces[place].filling;
+                let above = summed * scale - side.density;
+                *excess = match common.openings[place].reach >= h {
+                    true => above,
+                    false if corrected => above.max(0.0),
                     false => 0.0,
                 };
             }

@@ -1,14 +1,16 @@
 //! The accelerations.
 
 use piola_formulas::fluid;
+use piola_formulas::pairs::Components;
+use piola_formulas::pairs::corrected::{CorrectedForces, CorrectedWall, CorrectedWallForces};
 use piola_formulas::pairs::fluid::{
-    FULL, ForceConstants, ForceSums, Forces as Law, NONE, STRESS, Wall, WallForces,
+    FULL, ForceConstants, ForceSum, ForceSums, Forces as Law, NONE, STRESS, Wall, WallForces,
 };
 
 use super::{Common, WeaklyCompressible};
 use crate::Vector;
-use crate::operators::{Among, NeighborBlock, Term, add_at, gather};
-use crate::schemes::transport_velocity::{Forces, Momentum, Shifting};
+use crate::operators::{Among, MovingSupport, NeighborBlock, Sum, Term, add_at, gather};
+use crate::schemes::transport_velocity::{Forces, Gradients, Momentum, Shifting};
 
 impl<const D: usize> WeaklyCompressible<D> {
     /// Fills `forces` from the sides, without body forces. On wall particles it is the reaction
@@ -16,7 +18,12 @@ impl<const D: usize> WeaklyCompressible<D> {
     pub(super) fn force_pass(&self, common: &mut Common<D>) {
         let mut forces = std::mem::take(&mut common.forces);
         let (constants, kind) = self.force_law(common);
+        let corrected = common.settings.corrects_gradients();
         let fill = match kind {
+            (_, false, false) if corrected => Self::gather_corrected::<false, false>,
+            (_, false, true) if corrected => Self::gather_corrected::<false, true>,
+            (_, true, false) if corrected => Self::gather_corrected::<true, false>,
+            (_, true, true) if corrected => Self::gather_corrected::<true, true>,
             (NONE, false, false) => Self::gather_forces::<NONE, false, false>,
             (NONE, false, true) => Self::gather_forces::<NONE, false, true>,
             (NONE, true, false) => Self::gather_forces::<NONE, true, false>,
@@ -72,11 +79,32 @@ impl<const D: usize> WeaklyCompressible<D> {
         forces: &mut [Forces<D>],
     ) {
         let law = Law::<D, CORRECTS, ARTIFICIAL, CROWDING>(constants);
-        let (sides, shear) = (common.sides.as_slice(), self.shear.as_slice());
+        let sides = common.sides.as_slice();
         let fluid = Term { law, source: sides, among: Among::Active };
-        let walls = Term { law: WallForces(law), source: (sides, shear), among: Among::Passive };
-        let close = |_: usize, sums: &_, row: &mut _| *row = accelerations(sums);
-        gather(&common.support, &(fluid, walls), forces, |place| common.active(place), close);
+        let source = (sides, self.shear.as_slice());
+        let walls = Term { law: WallForces(law), source, among: Among::Passive };
+        fill_forces(common, &(fluid, walls), forces);
+    }
+
+    /// The same with the forces that are conjugate to corrected gradients, theory (110) and (112).
+    fn gather_corrected<const ARTIFICIAL: bool, const CROWDING: bool>(
+        &self,
+        common: &Common<D>,
+        constants: ForceConstants,
+        forces: &mut [Forces<D>],
+    ) {
+        let factor = match common.settings.gradients {
+            Gradients::Plain => 0.0,
+            Gradients::Corrected { velocity_diffusion } => velocity_diffusion,
+        };
+        let (h, c) = (common.support.smoothing_length(), self.fluid.wave_speed);
+        let plain = Law::<D, FULL, ARTIFICIAL, CROWDING>(constants);
+        let law = CorrectedForces(plain, fluid::pressure_diffusivity(factor, h, c));
+        let (sides, gradients) = (common.sides.as_slice(), self.gradients.as_slice());
+        let fluid = Term { law, source: (sides, gradients), among: Among::Active };
+        let source = ((sides, self.shear.as_slice()), gradients);
+        let walls = Term { law: CorrectedWallForces(law), source, among: Among::Passive };
+        fill_forces(common, &(fluid, walls), forces);
     }
 
     /// What pressure and viscosity of the fluid do to a particle (number), over its mass, if it is one of a wall.
@@ -85,10 +113,20 @@ impl<const D: usize> WeaklyCompressible<D> {
         let place = common.support.list().places()[number] as usize;
         let wall = Wall::<D>::of(&self.force_law(common).0);
         let of = |viscosity: f64| {
-            let source = (common.sides.as_slice(), self.shear.as_slice());
-            let law = Wall { viscosity, ..wall };
-            let (term, mut sum) = (Term { law, source, among: Among::Active }, Vector::zeros());
-            add_at(&common.support, &term, place, &mut NeighborBlock::default(), &mut sum);
+            let (law, mut sum) = (Wall { viscosity, ..wall }, Vector::zeros());
+            let (sides, among) = ((common.sides.as_slice(), self.shear.as_slice()), Among::Active);
+            let (support, block) = (&common.support, &mut NeighborBlock::default());
+            match common.settings.corrects_gradients() {
+                true => {
+                    let source = (sides, self.gradients.as_slice());
+                    let term = Term { law: CorrectedWall(law), source, among };
+                    add_at(support, &term, place, block, &mut sum);
+                }
+                false => {
+                    let term = Term { law, source: sides, among };
+                    add_at(support, &term, place, block, &mut sum);
+                }
+            }
             sum
         };
         let pressure = of(0.0);
@@ -99,13 +137,37 @@ impl<const D: usize> WeaklyCompressible<D> {
     /// round.
     fn react(&self, common: &Common<D>, constants: &ForceConstants, forces: &mut [Forces<D>]) {
         let law = Wall::<D>::of(constants);
-        let source = (common.sides.as_slice(), self.shear.as_slice());
-        let sum = Term { law, source, among: Among::Active };
-        let close = |_: usize, walls: &Vector<D>, row: &mut _| {
-            *row = Forces { walls: *walls, ..Forces::default() };
-        };
-        gather(&common.support, &sum, forces, |place| common.passive(place), close);
+        let (sides, among) = ((common.sides.as_slice(), self.shear.as_slice()), Among::Active);
+        match common.settings.corrects_gradients() {
+            true => {
+                let source = (sides, self.gradients.as_slice());
+                fill_reactions(common, &Term { law: CorrectedWall(law), source, among }, forces);
+            }
+            false => fill_reactions(common, &Term { law, source: sides, among }, forces),
+        }
     }
+}
+
+/// Fills the accelerations of the fluid.
+fn fill_forces<const D: usize, M: Sum<MovingSupport<D>, Sums = ForceSum<D>>>(
+    common: &Common<D>,
+    sum: &M,
+    forces: &mut [Forces<D>],
+) {
+    let close = |_: usize, sums: &_, row: &mut _| *row = accelerations(sums);
+    gather(&common.support, sum, forces, |place| common.active(place), close);
+}
+
+/// Fills the accelerations of walls.
+fn fill_reactions<const D: usize, M: Sum<MovingSupport<D>, Sums = Components<D>>>(
+    common: &Common<D>,
+    sum: &M,
+    forces: &mut [Forces<D>],
+) {
+    let close = |_: usize, walls: &Vector<D>, row: &mut _| {
+        *row = Forces { walls: *walls, ..Forces::default() };
+    };
+    gather(&common.support, sum, forces, |place| common.passive(place), close);
 }
 
 /// The accelerations of a particle with these sums, without body forces.

@@ -4,6 +4,7 @@ mod damping;
 mod density;
 mod drift;
 mod forces;
+mod gradients;
 mod open;
 mod rates;
 
@@ -11,13 +12,14 @@ use std::sync::Arc;
 
 use piola_device::{Device, Language};
 use piola_formulas::pairs::Record as _;
+use piola_formulas::pairs::corrected::{GradientSide, Gradients};
 use piola_formulas::pairs::fluid::FluidSide;
 use piola_formulas::pairs::sums::Density;
 
 use super::device::{self, FluidPlan};
 use super::fields::Made;
 use super::ledger::{ACCELERATIONS, DRIFTING, Drift};
-use super::stages::{Instant, Pass, stage};
+use super::stages::{Instant, Pass, stage, stage_of};
 use super::walls::WallValues;
 use super::{
     AtRest, Columns, Common, Continuum, DensityRule, Fluid, Rates, TransportVelocity,
@@ -110,6 +112,24 @@ const OPENINGS: Entry = LEDGER.entry("openings");
 const DAMPING: Entry = LEDGER.entry("damping");
 const BODY_FORCE: Entry = LEDGER.entry("body_force");
 
+/// What corrected forces read of a particle, and what they gather of its neighbours.
+const CORRECTED_READ: [&str; 6] = [
+    "side.velocity",
+    "side.shifting_velocity",
+    "side.density",
+    "side.pressure",
+    "gradients",
+    "neighbors",
+];
+const CORRECTED_SEEN: [&str; 6] = [
+    "place",
+    "side.velocity",
+    "side.shifting_velocity",
+    "side.density",
+    "side.pressure",
+    "gradients",
+];
+
 /// The mechanisms that accelerate.
 pub(super) const ACCELERATING: [Entry; ACCELERATIONS] = [
     PRESSURE,
@@ -129,6 +149,8 @@ pub struct WeaklyCompressible<const D: usize> {
     rates: Vec<Rates>,
     /// Velocity of each wall particle that viscous forces see.
     shear: Vec<Vector<D>>,
+    /// What corrected forces gather besides sides; empty where gradients are not corrected.
+    gradients: Vec<Gradients<f64, D>>,
     open: Open<D>,
     damping: Damping<D>,
 }
@@ -140,8 +162,14 @@ pub enum Ends {
     Exchange,
     /// Values of the particles in their buffers.
     Buffers,
+    /// Corrections of gradients, and gradients of velocities.
+    Gradients,
+    /// Accelerations between particles that are conjugate to corrected gradients.
+    Forces,
     /// What of the forces of walls is that of buffers.
     Part,
+    /// The same of forces that are conjugate to corrected gradients.
+    CorrectedPart,
     /// Motion dies out.
     Damp,
     /// By how much summation densities are above densities.
@@ -153,12 +181,14 @@ impl<const D: usize> WeaklyCompressible<D> {
     fn new(fluid: Fluid, common: &Common<D>) -> Self {
         let count = common.count();
         let touched = if common.walls.is_empty() { 0 } else { count };
+        let corrected = if common.settings.corrects_gradients() { count } else { 0 };
         Self {
             fluid,
             lattice_sum: common.lattice_sum(),
             densities: vec![0.0; count],
             rates: vec![Rates::default(); count],
             shear: vec![Vector::zeros(); touched],
+            gradients: vec![Gradients::none(); corrected],
             open: Open::none(),
             damping: Damping::default(),
         }
@@ -226,6 +256,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         match pass {
             Pass::Walls => D,
             Pass::Own(Ends::Buffers) => FluidSide::<D>::NUMBERS + D,
+            Pass::Own(Ends::Gradients) => GradientSide::<D>::NUMBERS,
             _ => 0,
         }
     }
@@ -304,7 +335,14 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         let buffers = only(Ends::Buffers);
         let drift = [common.spread(), walls.clone(), buffers.clone(), rates, vec![Pass::Move]];
         let (found, stored) = (vec![Pass::Remove, Pass::Load, Pass::State], vec![Pass::Store]);
-        let (forces, part) = (vec![Pass::Forces], only(Ends::Part));
+        let forces = match settings.corrects_gradients() {
+            true => vec![Pass::Own(Ends::Gradients), Pass::Own(Ends::Forces)],
+            false => vec![Pass::Forces],
+        };
+        let part = match settings.corrects_gradients() {
+            true => only(Ends::CorrectedPart),
+            false => only(Ends::Part),
+        };
         let exchange = only(Ends::Exchange);
         let damp = match self.damping.is_empty() {
             true => Vec::new(),
@@ -329,6 +367,14 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
                 let shows = &["side.velocity", "side.density", "side.pressure"];
                 stage("buffers", [&["position"], shows, &["buffers"], shows])
             }
+            Ends::Gradients => {
+                let gathers = &["place", "side.velocity", "side.density"];
+                stage("gradients", [&["neighbors", "side.velocity"], gathers, &[], &["gradients"]])
+            }
+            Ends::Forces => {
+                let writes = stage_of::<D, Self>(Pass::Forces).writes;
+                stage("forces", [&CORRECTED_READ, &CORRECTED_SEEN, writes, &[]])
+            }
             Ends::Damp => {
                 let reads = &["position", "side.velocity", "forces"];
                 stage("damp", [reads, &[], &["forces", "damping"], &[]])
@@ -340,6 +386,11 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             Ends::Part => {
                 let gathers = &["side.velocity", "side.density", "side.pressure"];
                 stage("part", [&["forces", "buffers"], gathers, &["openings"], &[]])
+            }
+            Ends::CorrectedPart => {
+                let reads = &["forces", "buffers", "gradients"];
+                let gathers = &["side.velocity", "side.density", "side.pressure", "gradients"];
+                stage("part", [reads, gathers, &["openings"], &[]])
             }
         }
     }
@@ -355,7 +406,9 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         match pass {
             Ends::Exchange => totals.book(OPENINGS, &self.exchange(common, at.time, state)),
             Ends::Buffers => self.fill_buffers(common, at.time),
-            Ends::Part => self.part_forces(common),
+            Ends::Gradients => self.find_gradients(common),
+            Ends::Forces => self.force_pass(common),
+            Ends::Part | Ends::CorrectedPart => self.part_forces(common),
             Ends::Damp => self.damp(common),
             Ends::Excess => self.find_excess(common, state),
         }
@@ -392,8 +445,18 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     }
 
     fn make_room(&mut self, common: &Common<D>) {
+        let all = common.support.list().len();
         if !self.shear.is_empty() {
-            self.shear.resize(common.support.list().len(), Vector::zeros());
+            self.shear.resize(all, Vector::zeros());
+        }
+        if !self.gradients.is_empty() {
+            self.gradients.resize(all, Gradients::none());
+        }
+    }
+
+    fn prepare_fields(&mut self, common: &Common<D>) {
+        if common.settings.corrects_gradients() {
+            self.find_gradients(common);
         }
     }
 
@@ -464,6 +527,10 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         vec![
             Array::of::<Rates>("rates"),
             Array::of::<Vector<D>>("shear"),
+            Array::with(
+                "gradients",
+                if self.gradients.is_empty() { 0 } else { size_of::<Gradients<f64, D>>() },
+            ),
             Array::of::<f64>("summed"),
             Array::of::<f64>("excess"),
         ]

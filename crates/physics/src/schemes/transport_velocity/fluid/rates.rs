@@ -1,6 +1,7 @@
 //! The rates of the pressure, which over `c^2` are those of the density.
 
 use piola_formulas::fluid;
+use piola_formulas::pairs::corrected::{CorrectedRateSums, CorrectedRates};
 use piola_formulas::pairs::fluid::{RateConstants, RateSums, Rates as Law};
 
 use super::{Common, Rates, WeaklyCompressible};
@@ -13,7 +14,10 @@ impl<const D: usize> WeaklyCompressible<D> {
     pub(super) fn rate_pass(&mut self, common: &Common<D>, time: f64) {
         let mut rates = std::mem::take(&mut self.rates);
         let (constants, kind) = self.rate_law(common);
+        let corrected = common.settings.corrects_gradients();
         let fill = match kind {
+            (_, _, true) if corrected => Self::gather_corrected_rates::<true>,
+            (_, _, false) if corrected => Self::gather_corrected_rates::<false>,
             (true, true, true) => Self::gather_rates::<true, true, true>,
             (true, true, false) => Self::gather_rates::<true, true, false>,
             (true, false, true) => Self::gather_rates::<true, false, true>,
@@ -50,26 +54,53 @@ impl<const D: usize> WeaklyCompressible<D> {
         time: f64,
         rates: &mut [Rates],
     ) {
-        let half_force = OfCenter(|place: usize| match FALLS {
-            true => half_of_body_force(common, place, time),
-            false => Vector::zeros(),
-        });
+        let half_force = half_force::<D, FALLS>(common, time);
         let law = Law::<D, CORRECTS, MOVES, FALLS>(constants);
         let sum = Term { law, source: (common.sides.as_slice(), half_force), among: Among::All };
-        let close = |_: usize, sums: &RateSums<f64, D>, row: &mut Rates| {
-            *row = Rates {
-                divergence: sums.divergence,
-                pressure_transport: sums.pressure_transport,
-                pressure_diffusion: sums.pressure_diffusion,
-            };
+        let close = |_: usize, sums: &RateSums<f64, D>, row: &mut Rates| *row = Rates::of(sums);
+        gather(&common.support, &sum, rates, |place| common.active(place), close);
+    }
+
+    /// The same with corrected gradients, theory (109).
+    fn gather_corrected_rates<const FALLS: bool>(
+        &self,
+        common: &Common<D>,
+        constants: RateConstants,
+        time: f64,
+        rates: &mut [Rates],
+    ) {
+        let half_force = half_force::<D, FALLS>(common, time);
+        let law = CorrectedRates::<D, FALLS>(constants);
+        let sum = Term { law, source: (common.sides.as_slice(), half_force), among: Among::All };
+        let close = |place: usize, sums: &CorrectedRateSums<f64, D>, row: &mut Rates| {
+            *row = Rates::of(&sums.rates(&common.sides[place].deviation));
         };
         gather(&common.support, &sum, rates, |place| common.active(place), close);
     }
 }
 
-/// Half of the body force g in m/s^2. Times the densities of two particles it is the gradient of
-/// the pressure between them in a fluid at rest, which must not diffuse out of a free surface.
-fn half_of_body_force<const D: usize>(common: &Common<D>, place: usize, time: f64) -> Vector<D> {
-    let number = common.support.list().numbers()[place] as usize;
-    common.body_force_at(number, place, time) * 0.5
+impl Rates {
+    /// Those of these sums.
+    fn of<const D: usize>(sums: &RateSums<f64, D>) -> Self {
+        Self {
+            divergence: sums.divergence,
+            pressure_transport: sums.pressure_transport,
+            pressure_diffusion: sums.pressure_diffusion,
+        }
+    }
+}
+
+/// Half of the body force g in m/s^2 at places. Times the densities of two particles it is the gradient of the pressure
+/// between them in a fluid at rest, which must not diffuse out of a free surface.
+fn half_force<const D: usize, const FALLS: bool>(
+    common: &Common<D>,
+    time: f64,
+) -> OfCenter<impl Fn(usize) -> Vector<D> + Sync> {
+    OfCenter(move |place: usize| match FALLS {
+        true => {
+            let number = common.support.list().numbers()[place] as usize;
+            common.body_force_at(number, place, time) * 0.5
+        }
+        false => Vector::zeros(),
+    })
 }

@@ -2,7 +2,9 @@
 
 use piola_formulas::fluid;
 use piola_formulas::kernels::Needs;
+use piola_formulas::pairs::corrected::CorrectedWall;
 use piola_formulas::pairs::fluid::Wall;
+use piola_formulas::pairs::{MovingPair, Of};
 
 use super::{
     Common, Flow, Fluid, KEPT, Kept, LATE_PRESSURE, Open, OpenBoundary, Seen, Side,
@@ -156,12 +158,26 @@ impl<const D: usize> WeaklyCompressible<D> {
         };
         let of_buffers =
             |other: usize| (roles[number(other) as usize] > 0).then(|| self.shear[other]);
-        part(common, law, Among::Passive, near_opening, of_buffers, &mut forces);
+        let (gradients, corrected) = (&self.gradients, common.settings.corrects_gradients());
+        let act = |law: Wall<D>| {
+            move |[me, other]: [usize; 2], jump: &_, pair: &_, sum: &mut _| {
+                let sides = [me, other].map(|place| &common.sides[place]);
+                match corrected {
+                    true => {
+                        let [own, foreign] = [me, other].map(|place| &gradients[place]);
+                        let both = [(sides[0], own), (sides[1], foreign)];
+                        CorrectedWall(law).act(both, jump, pair, sum);
+                    }
+                    false => law.act(sides, jump, pair, sum),
+                }
+            }
+        };
+        part(common, act(law), Among::Passive, near_opening, of_buffers, &mut forces);
         let near_level = |at: &Vector<D>| self.meets_followers(at, reach);
         let of_followers =
             |other: usize| self.is_follower(number(other)).then(|| common.sides[other].velocity);
         let law = Wall { viscosity: 0.0, ..law };
-        part(common, law, Among::Active, near_level, of_followers, &mut pulls);
+        part(common, act(law), Among::Active, near_level, of_followers, &mut pulls);
         (self.open.forces, self.open.pulls) = (forces, pulls);
     }
 
@@ -201,7 +217,7 @@ impl<const D: usize> WeaklyCompressible<D> {
 /// viscous forces see of a neighbour that counts.
 fn part<const D: usize>(
     common: &Common<D>,
-    law: Wall<D>,
+    law: impl Fn([usize; 2], &Vector<D>, &Of<MovingPair<D>, f64>, &mut Vector<D>) + Sync,
     among: Among,
     is_near: impl Fn(&Vector<D>) -> bool + Sync,
     theirs: impl Fn(usize) -> Option<Vector<D>> + Sync,
@@ -224,11 +240,10 @@ fn part<const D: usize>(
             if !neighbors.iter().any(|&other| theirs(other as usize).is_some()) {
                 continue;
             }
-            let me = &common.sides[place];
             visit(&common.support, place, among, Needs::Slope, &mut block, |other, pair| {
                 if let Some(velocity) = theirs(other) {
-                    let jump = me.velocity - velocity;
-                    law.push([me, &common.sides[other]], &jump, pair, row);
+                    let jump = common.sides[place].velocity - velocity;
+                    law([place, other], &jump, pair, row);
                 }
             });
         }
