@@ -92,3 +92,11 @@ impl<const D: usize> WeaklyCompressible<D> {
         square.sqrt()
     }
 }
+
+/// The sum of masses, theory (26).
+pub(super) fn summed_density<const D: usize>(common: &Common<D>, number: usize) -> f64 {
+    let place = common.support.list().places()[number] as usize;
+    let mut sum = common.sides[place].mass() * common.support.centre();
+    common.add_all(Density, place, &mut sum);
+    sum
+}

@@ -7,6 +7,7 @@ mod forces;
 mod gradients;
 mod open;
 mod rates;
+mod stages;
 
 use std::sync::Arc;
 
@@ -14,12 +15,11 @@ use piola_device::{Device, Language};
 use piola_formulas::pairs::Record as _;
 use piola_formulas::pairs::corrected::{GradientSide, Gradients};
 use piola_formulas::pairs::fluid::FluidSide;
-use piola_formulas::pairs::sums::Density;
 
 use super::device::{self, FluidPlan};
 use super::fields::Made;
 use super::ledger::{ACCELERATIONS, DRIFTING, Drift};
-use super::stages::{Instant, Pass, stage, stage_of};
+use super::stages::{Instant, Pass};
 use super::walls::WallValues;
 use super::{
     AtRest, Columns, Common, Continuum, DensityRule, Fluid, Rates, TransportVelocity,
@@ -36,8 +36,10 @@ use crate::schemes::{
 };
 
 use damping::Damping;
+use density::summed_density;
 use open::Open;
 pub use open::{Flow, Nesting, OpenBoundaries, OpenBoundary, Refined};
+pub use stages::Ends;
 
 columns! {
     pub(super) struct Stored, StoredMut, enum Own;
@@ -112,24 +114,6 @@ const OPENINGS: Entry = LEDGER.entry("openings");
 const DAMPING: Entry = LEDGER.entry("damping");
 const BODY_FORCE: Entry = LEDGER.entry("body_force");
 
-/// What corrected forces read of a particle, and what they gather of its neighbours.
-const CORRECTED_READ: [&str; 6] = [
-    "side.velocity",
-    "side.shifting_velocity",
-    "side.density",
-    "side.pressure",
-    "gradients",
-    "neighbors",
-];
-const CORRECTED_SEEN: [&str; 6] = [
-    "place",
-    "side.velocity",
-    "side.shifting_velocity",
-    "side.density",
-    "side.pressure",
-    "gradients",
-];
-
 /// The mechanisms that accelerate.
 pub(super) const ACCELERATING: [Entry; ACCELERATIONS] = [
     PRESSURE,
@@ -153,27 +137,6 @@ pub struct WeaklyCompressible<const D: usize> {
     gradients: Vec<Gradients<f64, D>>,
     open: Open<D>,
     damping: Damping<D>,
-}
-
-/// Passes of fluids alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ends {
-    /// Particles go through open boundaries.
-    Exchange,
-    /// Values of the particles in their buffers.
-    Buffers,
-    /// Corrections of gradients, and gradients of velocities.
-    Gradients,
-    /// Accelerations between particles that are conjugate to corrected gradients.
-    Forces,
-    /// What of the forces of walls is that of buffers.
-    Part,
-    /// The same of forces that are conjugate to corrected gradients.
-    CorrectedPart,
-    /// Motion dies out.
-    Damp,
-    /// By how much summation densities are above densities.
-    Excess,
 }
 
 impl<const D: usize> WeaklyCompressible<D> {
@@ -327,72 +290,11 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     }
 
     fn passes(&self, common: &Common<D>) -> [Vec<Pass<Ends>>; 2] {
-        let settings = &common.settings;
-        let has_rates = settings.density == DensityRule::Continuity || !settings.is_algebraic();
-        let [walls, body_forces, shift, barrier] = common.passes();
-        let rates = if has_rates { vec![Pass::Rates] } else { Vec::new() };
-        let only = |pass| if self.open.is_empty() { Vec::new() } else { vec![Pass::Own(pass)] };
-        let buffers = only(Ends::Buffers);
-        let drift = [common.spread(), walls.clone(), buffers.clone(), rates, vec![Pass::Move]];
-        let (found, stored) = (vec![Pass::Remove, Pass::Load, Pass::State], vec![Pass::Store]);
-        let forces = match settings.corrects_gradients() {
-            true => vec![Pass::Own(Ends::Gradients), Pass::Own(Ends::Forces)],
-            false => vec![Pass::Forces],
-        };
-        let part = match settings.corrects_gradients() {
-            true => only(Ends::CorrectedPart),
-            false => only(Ends::Part),
-        };
-        let exchange = only(Ends::Exchange);
-        let damp = match self.damping.is_empty() {
-            true => Vec::new(),
-            false => vec![Pass::Own(Ends::Damp)],
-        };
-        let excess = match settings.relaxes() {
-            true => vec![Pass::Own(Ends::Excess)],
-            false => Vec::new(),
-        };
-        let pushed = [forces, part, body_forces, damp].concat();
-        let accelerate = [exchange, found, walls, buffers, pushed, shift, excess, barrier, stored];
-        [drift.concat(), accelerate.concat()]
+        self.order(common)
     }
 
     fn stage(pass: Ends) -> Stage {
-        match pass {
-            Ends::Exchange => {
-                let all = &["position", "velocity", "density", "pressure"];
-                stage("exchange", [all, &[], &[], all])
-            }
-            Ends::Buffers => {
-                let shows = &["side.velocity", "side.density", "side.pressure"];
-                stage("buffers", [&["position"], shows, &["buffers"], shows])
-            }
-            Ends::Gradients => {
-                let gathers = &["place", "side.velocity", "side.density"];
-                stage("gradients", [&["neighbors", "side.velocity"], gathers, &[], &["gradients"]])
-            }
-            Ends::Forces => {
-                let writes = stage_of::<D, Self>(Pass::Forces).writes;
-                stage("forces", [&CORRECTED_READ, &CORRECTED_SEEN, writes, &[]])
-            }
-            Ends::Damp => {
-                let reads = &["position", "side.velocity", "forces"];
-                stage("damp", [reads, &[], &["forces", "damping"], &[]])
-            }
-            Ends::Excess => {
-                let reads = &["forces.filling", "side.density", "surface.reach", "material_state"];
-                stage("excess", [reads, &[], &["excess"], &[]])
-            }
-            Ends::Part => {
-                let gathers = &["side.velocity", "side.density", "side.pressure"];
-                stage("part", [&["forces", "buffers"], gathers, &["openings"], &[]])
-            }
-            Ends::CorrectedPart => {
-                let reads = &["forces", "buffers", "gradients"];
-                let gathers = &["side.velocity", "side.density", "side.pressure", "gradients"];
-                stage("part", [reads, gathers, &["openings"], &[]])
-            }
-        }
+        stages::stage_of_fluid::<D>(pass)
     }
 
     fn run(
@@ -551,12 +453,4 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         device::stages::<D, FluidPlan<D>>(system, language, method)
     }
-}
-
-/// The sum of masses, theory (26).
-fn summed_density<const D: usize>(common: &Common<D>, number: usize) -> f64 {
-    let place = common.support.list().places()[number] as usize;
-    let mut sum = common.sides[place].mass() * common.support.centre();
-    common.add_all(Density, place, &mut sum);
-    sum
 }
