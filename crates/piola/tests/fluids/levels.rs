@@ -76,7 +76,12 @@ fn vortices() -> String {
 /// What is booked is all that changes energy and momentum, and what counts is what there is up to what is on its way.
 #[test]
 fn the_ledger_of_vortices_through_levels_balances() {
-    let finished = run(&vortices(), &["parameters.end=0.3"]);
+    balances_through_levels(&["parameters.end=0.3"]);
+    balances_through_levels(&["parameters.end=0.3", "scheme.corrected_gradients=true"]);
+}
+
+fn balances_through_levels(set: &[&str]) {
+    let finished = run(&vortices(), set);
     assert_eq!(finished.summary.outcome.summary(), "completed");
     assert!(off(&finished, "energy.balance", "energy.total") < 1e-12);
     // The momentum of the whole is near to nothing; that of one vortex is its mass times a third of the largest speed.

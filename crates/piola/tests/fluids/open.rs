@@ -59,24 +59,37 @@ fn stream(dimension: usize) -> String {
     )
 }
 
+const CORRECTED: &str = "scheme.corrected_gradients=true";
+
 /// A stream of 1 m/s that is let in and out stays what it is: a lattice that goes on without end moves as one. In the
 /// time of the run all of the fluid is another.
 #[test]
 fn a_uniform_stream_goes_through_unchanged() {
     for dimension in [1, 2, 3] {
-        let finished = run(&stream(dimension), &[]);
-        assert_eq!(finished.summary.outcome.summary(), "completed", "in {dimension}D");
-        let worst = values(&finished, "error.error").into_iter().fold(0.0, f64::max);
-        assert!(worst < 1e-9, "{worst} in {dimension}D");
-        // 1 m of the stream with a density of 2, in whole layers that have gone through.
-        let area = 0.4_f64.powi(dimension as i32 - 1);
-        for name in ["step.entered", "step.left"] {
-            let mass = values(&finished, name).pop().expect("a row");
-            assert!(
-                (mass - 2.0 * area).abs() < 2.0 * area * 0.05 * 1.3,
-                "{name} {mass} in {dimension}D"
-            );
-        }
+        passes_through(dimension, &[]);
+    }
+}
+
+#[test]
+fn a_uniform_stream_goes_through_corrected_gradients_unchanged() {
+    for dimension in [1, 2, 3] {
+        passes_through(dimension, &[CORRECTED]);
+    }
+}
+
+fn passes_through(dimension: usize, set: &[&str]) {
+    let finished = run(&stream(dimension), set);
+    assert_eq!(finished.summary.outcome.summary(), "completed", "in {dimension}D");
+    let worst = values(&finished, "error.error").into_iter().fold(0.0, f64::max);
+    assert!(worst < 1e-9, "{worst} in {dimension}D");
+    // 1 m of the stream with a density of 2, in whole layers that have gone through.
+    let area = 0.4_f64.powi(dimension as i32 - 1);
+    for name in ["step.entered", "step.left"] {
+        let mass = values(&finished, name).pop().expect("a row");
+        assert!(
+            (mass - 2.0 * area).abs() < 2.0 * area * 0.05 * 1.3,
+            "{name} {mass} in {dimension}D"
+        );
     }
 }
 
@@ -223,8 +236,13 @@ fn profiles_and_histories_come_from_files() {
 /// What the forces of buffers and what goes through them do is all that changes the energy and the momentum of a fluid.
 #[test]
 fn the_ledger_of_a_stream_that_comes_and_goes_balances() {
+    books_what_comes_and_goes(&[]);
+    books_what_comes_and_goes(&[CORRECTED]);
+}
+
+fn books_what_comes_and_goes(set: &[&str]) {
     let swing = ["parameters.inflow=0.0", "body.inlet.opening.velocity=['1.5 * sin(6 * t)', '0']"];
-    let finished = run(&stream(2), &swing);
+    let finished = run(&stream(2), &[&swing[..], set].concat());
     assert_eq!(finished.summary.outcome.summary(), "completed");
     for name in ["energy.balance", "momentum.balance.linear.x"] {
         let worst = values(&finished, name).into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));

@@ -285,6 +285,15 @@ fn water_and_block_of_another_spacing_keep_their_momentum() {
     }
 }
 
+/// The same with the pressure forces of corrected gradients, theory (110), which do not act along the line between two
+/// particles. Without shifting the corrections for it are zero.
+#[test]
+fn water_with_corrected_gradients_and_block_keep_their_momentum() {
+    let scheme = "scheme={ kind='transport_velocity', shifting='none', corrected_gradients=true }";
+    keeps_momentum(vec![scheme.into()]);
+    keeps_momentum(vec![scheme.into(), "body.block.spacing='0.05 / 3'".into()]);
+}
+
 /// The same of a rigid head, which the water moves, with a soft tail.
 #[test]
 fn water_and_a_tail_on_a_moving_head_keep_their_momentum() {

@@ -28,7 +28,8 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     ///
     /// - `acoustic`: `h / (c + |u|)` of the largest speed; of solids with the speed of longitudinal waves,
     ///   where the paper has that of bulk waves;
-    /// - `viscous`: `h^2 / nu`, with `viscous_force = "stress"` a third of it, as a compression meets 3 nu;
+    /// - `viscous`: `h^2 / nu`, with `viscous_force = "stress"` a third of it, as a compression meets 3 nu; the
+    ///   diffusion of velocities, theory (112), has a bound of `8 h / c` at least, above the acoustic one;
     /// - `acceleration`: `sqrt(h / |du/dt|)` of the largest acceleration, where the paper has
     ///   that of gravity;
     /// - `damping`: the inverse of the largest rate of damping.

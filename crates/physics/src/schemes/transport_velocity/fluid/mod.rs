@@ -80,8 +80,8 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
 /// `pressure` is what the exchange between kinetic energy and that of compression fails to
 /// conserve: the discrete force and divergence are not exact adjoints.
 ///
-/// Viscous forces act along `u_ab` and turn the fluid; the corrections neither come in pairs, nor do
-/// particles move along their velocity. What is removed takes its momentum along.
+/// Viscous forces, and what diffuses velocities, act along `u_ab` and turn the fluid, and what follows another level does
+/// not feel them; the corrections neither come in pairs, nor do particles move along their velocity. What is removed takes its momentum along.
 pub(super) const LEDGER: Accounts = Accounts {
     mechanisms: &[
         "pressure",
@@ -118,7 +118,7 @@ const BODY_FORCE: Entry = LEDGER.entry("body_force");
 pub(super) const ACCELERATING: [Entry; ACCELERATIONS] = [
     PRESSURE,
     LEDGER.entry("viscosity"),
-    LEDGER.entry("artificial_viscosity"),
+    LEDGER.entry_by("artificial_viscosity", "viscosity"),
     TRANSPORT,
     WALLS,
     BODY_FORCE,
