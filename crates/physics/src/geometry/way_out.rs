@@ -16,6 +16,8 @@ const ON_FACET: f64 = 1e-9;
 const SHIFT: f64 = 1e-6;
 /// Ways whose lengths differ by less than this part count as equally short.
 const TIE: f64 = 0.05;
+/// Starts of a search that are longer than the shortest way by more than this factor are not improved.
+const MOST_OF_START: f64 = 1.5;
 /// Most normals that are followed to a curved face, and how little the last one turns.
 const MOST_TURNS: usize = 30;
 const STRAIGHT: f64 = 1e-6;
@@ -30,6 +32,16 @@ pub(crate) fn slope<const D: usize>(
         let aside = Vector::from_fn(|i, _| if i == axis { step } else { 0.0 });
         depth(&(point + aside)) - depth(&(point - aside))
     })
+}
+
+/// The rays from a point inside a shape that is `depth` m below its boundary, as far as the corners `bounds`, a box whose
+/// diagonal is `extent` m.
+struct Rays<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    point: &'a Vector<D>,
+    depth: f64,
+    bounds: &'a (Vector<D>, Vector<D>),
+    extent: f64,
 }
 
 impl<const D: usize> Shape<D> {
@@ -62,11 +74,14 @@ impl<const D: usize> Shape<D> {
                 return faces.map(|face| (*face.0, back(face))).collect();
             }
         }
-        let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
+        let rays = self.rays(point, bounds);
+        let mut shortest = f64::INFINITY;
         let starts = (0..3usize.pow(D as u32)).filter_map(|number| {
             let turn = |axis: usize| (number / 3usize.pow(axis as u32) % 3) as f64 - 1.0;
             let start = Vector::<D>::from_fn(|axis, _| turn(axis)).try_normalize(0.0)?;
-            Some((length(&start), start))
+            let found = rays.length(&start, (MOST_OF_START * shortest).max(2.0 * layer));
+            shortest = shortest.min(found);
+            Some((found, start))
         });
         let mut starts: Vec<(f64, Vector<D>)> =
             starts.filter(|(length, _)| length.is_finite()).collect();
@@ -78,7 +93,7 @@ impl<const D: usize> Shape<D> {
         let Some(first) = first else { return Faces::default() };
         // The straight ways to faces before those between them, which are refined to them less well.
         starts.sort_by_key(|start| start.0 > first.0 * (1.0 + TIE));
-        let mut faces = vec![refine(first, &length)];
+        let mut faces = vec![rays.refine(first)];
         let least = faces[0].0;
         let most = least * (1.0 + TIE);
         let is_other = |way: &Vector<D>, faces: &[(f64, Vector<D>)]| {
@@ -88,10 +103,10 @@ impl<const D: usize> Shape<D> {
             // A way that ends on the plane of a face already found leads to the same face.
             let on_plane =
                 |face: &(f64, Vector<D>)| start.0 * start.1.dot(&face.1) >= face.0 * (1.0 - TIE);
-            if start.0 > 1.5 * least || faces.iter().any(on_plane) {
+            if start.0 > MOST_OF_START * least || faces.iter().any(on_plane) {
                 continue;
             }
-            let found = refine(*start, &length);
+            let found = rays.refine(*start);
             if is_other(&found.1, &faces) && found.0 <= most {
                 faces.push(found);
             }
@@ -100,34 +115,16 @@ impl<const D: usize> Shape<D> {
             face.0 = least;
         }
         for start in starts.iter().filter(|start| start.0 <= 2.0 * layer) {
-            let found = self.face_along(point, &start.1, SHIFT * extent, &length);
+            let found = rays.face_along(&start.1, SHIFT * extent);
             let found = found.filter(|face| face.0 <= layer && is_other(&face.1, &faces));
             faces.extend(found);
         }
         faces.into_iter().map(|(length, normal)| (normal, length)).collect()
     }
 
-    /// The face that a ray leaves the shape through, or on a curved one that to which its normal leads, with the length of the
-    /// straight way there in m; slopes are taken over `step` m. `None` at an edge and where that does not end.
-    fn face_along(
-        &self,
-        point: &Vector<D>,
-        direction: &Vector<D>,
-        step: f64,
-        length: &impl Fn(&Vector<D>) -> f64,
-    ) -> Option<(f64, Vector<D>)> {
-        let mut way = *direction;
-        for _ in 0..MOST_TURNS {
-            let found = Some(length(&way)).filter(|length| length.is_finite())?;
-            let slope = slope(&(point + way * found), step, |x| self.depth(x));
-            // Across an edge the depth does not grow by all of the step.
-            let normal = -slope.try_normalize(1.9 * step)?;
-            if (normal - way).norm() < STRAIGHT {
-                return Some((found, normal));
-            }
-            way = normal;
-        }
-        None
+    fn rays<'a>(&'a self, point: &'a Vector<D>, bounds: &'a (Vector<D>, Vector<D>)) -> Rays<'a, D> {
+        let (depth, extent) = (self.depth(point), (bounds.1 - bounds.0).norm());
+        Rays { shape: self, point, depth, bounds, extent }
     }
 
     /// The direction in which the depth grows about a point, by differences over `step` m on both sides.
@@ -204,8 +201,8 @@ impl<const D: usize> Shape<D> {
         [reach, layer]: [f64; 2],
         bounds: &(Vector<D>, Vector<D>),
     ) -> Option<[Faces<D>; 2]> {
-        let extent = (bounds.1 - bounds.0).norm();
-        let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
+        let rays = self.rays(point, bounds);
+        let length = |direction: &Vector<D>| rays.length(direction, f64::INFINITY);
         let nearest = self.ways_out(point, layer, bounds);
         let across = nearest.normals().iter().find(|normal| length(&-**normal) < reach)?;
         let along = |axis: usize| {
@@ -222,57 +219,6 @@ impl<const D: usize> Shape<D> {
         let front = own.chain(others).collect();
         let back = Faces::new(vec![-across], length(&-across));
         Some([front, back])
-    }
-
-    /// Length of the way out along a direction, infinite if it leaves the bounds.
-    fn walk(
-        &self,
-        point: &Vector<D>,
-        direction: &Vector<D>,
-        bounds: &(Vector<D>, Vector<D>),
-        extent: f64,
-    ) -> f64 {
-        let least = 1e-9 * extent;
-        let (mut length, mut last) = (0.0, 0.0);
-        for _ in 0..MOST_STEPS {
-            let place = point + direction * length;
-            let inside = (0..D).all(|axis| {
-                bounds.0[axis] + least < place[axis] && place[axis] < bounds.1[axis] - least
-            });
-            let depth = self.depth(&place);
-            if depth < 0.0 {
-                return if inside {
-                    self.crossing(point, direction, last, length)
-                } else {
-                    f64::INFINITY
-                };
-            }
-            if length > extent {
-                break;
-            }
-            last = length;
-            length += depth.max(least);
-        }
-        f64::INFINITY
-    }
-
-    /// Where a ray leaves the shape between two lengths, inside at the first one and outside at the second.
-    fn crossing(
-        &self,
-        point: &Vector<D>,
-        direction: &Vector<D>,
-        mut inner: f64,
-        mut outer: f64,
-    ) -> f64 {
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (inner + outer);
-            if self.depth(&(point + direction * middle)) < 0.0 {
-                outer = middle;
-            } else {
-                inner = middle;
-            }
-        }
-        outer
     }
 }
 
@@ -308,188 +254,87 @@ fn apart<const D: usize>(ways: &[Vector<D>]) -> Vec<Vector<D>> {
     normals
 }
 
-/// The shortest way close to a start, and its direction.
-fn refine<const D: usize>(
-    (mut least, mut direction): (f64, Vector<D>),
-    length: &impl Fn(&Vector<D>) -> f64,
-) -> (f64, Vector<D>) {
-    let mut turn = 0.3;
-    for _ in 0..HALVINGS {
-        for axis in 0..D {
-            for sign in [-turn, turn] {
-                let mut tried = direction;
-                tried[axis] += sign;
-                let tried = tried.normalize();
-                let found = length(&tried);
-                if found < least * (1.0 - 1e-12) {
-                    (least, direction) = (found, tried);
+impl<const D: usize> Rays<'_, D> {
+    /// Length of the way out along a direction, infinite if it leaves the bounds, or is known to be as long as `most`.
+    fn length(&self, direction: &Vector<D>, most: f64) -> f64 {
+        let &Self { point, bounds, extent, .. } = self;
+        let least = 1e-9 * extent;
+        let (mut length, mut last) = (0.0, 0.0);
+        for _ in 0..MOST_STEPS {
+            let place = point + direction * length;
+            let inside = (0..D).all(|axis| {
+                bounds.0[axis] + least < place[axis] && place[axis] < bounds.1[axis] - least
+            });
+            let depth = if length == 0.0 { self.depth } else { self.shape.depth(&place) };
+            if depth < 0.0 {
+                return if inside {
+                    self.crossing(direction, [last, length], most)
+                } else {
+                    f64::INFINITY
+                };
+            }
+            if length > extent || length >= most {
+                break;
+            }
+            last = length;
+            length += depth.max(least);
+        }
+        f64::INFINITY
+    }
+
+    /// Where a ray leaves the shape between two lengths, inside at the first one and outside at the second. Infinite if it is
+    /// inside at `most`.
+    fn crossing(&self, direction: &Vector<D>, [mut inner, mut outer]: [f64; 2], most: f64) -> f64 {
+        for _ in 0..HALVINGS {
+            if inner >= most {
+                return f64::INFINITY;
+            }
+            let middle = 0.5 * (inner + outer);
+            if self.shape.depth(&(self.point + direction * middle)) < 0.0 {
+                outer = middle;
+            } else {
+                inner = middle;
+            }
+        }
+        outer
+    }
+
+    /// The face that a ray leaves the shape through, or on a curved one that to which its normal leads, with the length of the
+    /// straight way there in m; slopes are taken over `step` m. `None` at an edge and where that does not end.
+    fn face_along(&self, direction: &Vector<D>, step: f64) -> Option<(f64, Vector<D>)> {
+        let mut way = *direction;
+        for _ in 0..MOST_TURNS {
+            let found =
+                Some(self.length(&way, f64::INFINITY)).filter(|length| length.is_finite())?;
+            let slope = slope(&(self.point + way * found), step, |x| self.shape.depth(x));
+            // Across an edge the depth does not grow by all of the step.
+            let normal = -slope.try_normalize(1.9 * step)?;
+            if (normal - way).norm() < STRAIGHT {
+                return Some((found, normal));
+            }
+            way = normal;
+        }
+        None
+    }
+
+    /// The shortest way close to a start, and its direction.
+    fn refine(&self, (mut least, mut direction): (f64, Vector<D>)) -> (f64, Vector<D>) {
+        let mut turn = 0.3;
+        for _ in 0..HALVINGS {
+            for axis in 0..D {
+                for sign in [-turn, turn] {
+                    let mut tried = direction;
+                    tried[axis] += sign;
+                    let tried = tried.normalize();
+                    let shorter = least * (1.0 - 1e-12);
+                    let found = self.length(&tried, shorter);
+                    if found < shorter {
+                        (least, direction) = (found, tried);
+                    }
                 }
             }
+            turn *= 0.5;
         }
-        turn *= 0.5;
-    }
-    (least, direction)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn tank() -> (Shape<2>, (Vector<2>, Vector<2>)) {
-        let corner = |x, y| Vector::<2>::new(x, y);
-        let outer = Shape::cuboid(corner(-0.3, -0.3), corner(1.3, 1.0)).unwrap();
-        let inner = Shape::cuboid(corner(0.0, 0.0), corner(1.0, 2.0)).unwrap();
-        (Shape::difference(outer, vec![inner]).unwrap(), (corner(-0.3, -0.3), corner(1.3, 1.0)))
-    }
-
-    #[test]
-    fn the_walls_of_a_tank_face_its_inside() {
-        let (tank, bounds) = tank();
-        let way = |x, y| tank.ways_out(&Vector::<2>::new(x, y), 0.0, &bounds).between();
-        let close = |way: Vector<2>, x, y| (way - Vector::<2>::new(x, y)).norm() < 1e-4;
-        assert!(close(way(0.5, -0.05), 0.0, 1.0));
-        assert!(close(way(0.05, -0.25), 0.0, 1.0), "deep in the floor, close to a corner");
-        assert!(close(way(-0.25, 0.5), 1.0, 0.0));
-        assert!(close(way(1.15, 0.97), -1.0, 0.0), "at the rim");
-        let diagonal = 0.5_f64.sqrt();
-        assert!(close(way(-0.1, -0.1), diagonal, diagonal));
-    }
-
-    #[test]
-    fn places_on_the_boundary_face_out_of_it() {
-        let bounds = (Vector::<2>::repeat(-5.0), Vector::<2>::repeat(5.0));
-        let ball = Shape::ball(Vector::<2>::new(0.2, 0.1), 0.5).unwrap();
-        for number in 0..100 {
-            let angle = 0.063 * f64::from(number);
-            let normal = Vector::<2>::new(angle.cos(), angle.sin());
-            for depth in [-1e-16, 0.0, 1e-16] {
-                let at = Vector::<2>::new(0.2, 0.1) + normal * (0.5 - depth);
-                let faces = ball.ways_out(&at, 0.0, &bounds);
-                assert!((faces.between() - normal).norm() < 1e-3, "{angle} {faces:?}");
-                assert!(faces.depth() < 1e-9, "{faces:?}");
-            }
-        }
-        let (tank, bounds) = tank();
-        let floor = tank.ways_out(&Vector::<2>::new(0.3, 0.0), 0.0, &bounds);
-        assert_eq!(floor.normals(), [Vector::<2>::new(0.0, 1.0)]);
-        assert!(floor.depth() < 1e-9);
-        // On the outer bounds, where the way leads through the floor.
-        let below = tank.ways_out(&Vector::<2>::new(0.3, -0.3), 0.0, &bounds);
-        assert_eq!(below.normals(), [Vector::<2>::new(0.0, 1.0)]);
-        assert!((below.depth() - 0.3).abs() < 1e-9, "{below:?}");
-    }
-
-    #[test]
-    fn a_thin_plate_has_two_sides_but_at_its_end() {
-        let corner = |x, y| Vector::<2>::new(x, y);
-        let plate = Shape::cuboid(corner(0.0, 0.0), corner(0.3, 4.0)).unwrap();
-        let bounds = (Vector::<2>::repeat(-5.0), Vector::<2>::repeat(9.0));
-        let sides = |x, y| plate.sides(&corner(x, y), [0.29, 0.1], &bounds);
-        let [left, right] = sides(0.05, 2.0).expect("seen from the right, too");
-        assert!((left.between() + right.between()).norm() < 1e-9);
-        assert!((left.between() - corner(-1.0, 0.0)).norm() < 1e-4);
-        assert!((left.depth() - 0.05).abs() < 1e-6 && (right.depth() - 0.25).abs() < 1e-6);
-        assert!(sides(0.15, 2.0).is_some() && sides(0.15, 0.2).is_none(), "the end is 0.2 away");
-        assert_eq!(
-            plate.sides(&corner(0.05, 2.0), [0.24, 0.1], &bounds),
-            None,
-            "thicker than the reach"
-        );
-    }
-
-    #[test]
-    fn the_edges_of_a_pillar_face_between_its_sides() {
-        let low = Vector::<3>::new(1.0, 0.0, -1.0);
-        let pillar = Shape::cuboid(low, low + Vector::<3>::new(0.5, 0.5, 3.0)).unwrap();
-        let bounds = (Vector::<3>::repeat(-3.0), Vector::<3>::repeat(5.0));
-        let way = |x, y| pillar.ways_out(&Vector::<3>::new(x, y, 0.5), 0.0, &bounds).between();
-        let diagonal = 0.5_f64.sqrt();
-        for (x, y, sign_x, sign_y) in
-            [(1.1, 0.1, -1.0, -1.0), (1.4, 0.1, 1.0, -1.0), (1.4, 0.4, 1.0, 1.0)]
-        {
-            let expected = Vector::<3>::new(sign_x, sign_y, 0.0) * diagonal;
-            assert!((way(x, y) - expected).norm() < 2e-3, "{} at {x}, {y}", way(x, y));
-        }
-        let side = Vector::<3>::new(-1.0, 0.0, 0.0);
-        assert!((way(1.1, 0.2) - side).norm() < 2e-3, "on a side");
-    }
-
-    /// A lattice of cells that are not as high as long, or that does not fit the shape: in the first layer behind a face is what is
-    /// less than a spacing behind it.
-    #[test]
-    fn in_the_first_layer_behind_two_faces_both_count() {
-        let block = Shape::cuboid(Vector::<2>::zeros(), Vector::<2>::new(1.0, 2.0)).unwrap();
-        let bounds = (Vector::<2>::repeat(-3.0), Vector::<2>::repeat(5.0));
-        let faces = |x, y| block.ways_out(&Vector::<2>::new(x, y), 0.2, &bounds);
-        for [x, y] in [[0.1, 0.115], [0.115, 0.1], [0.1, 0.104], [0.02, 0.19], [0.19, 0.02]] {
-            let faces = faces(x, y);
-            assert_eq!(faces.normals().len(), 2, "{faces:?}");
-            for (normal, depth) in faces.normals().iter().zip(faces.depths()) {
-                let exact = if normal[0] < -0.5 { x } else { y };
-                // What is longer by less than 5 % counts as equally short.
-                let shared = if exact < 1.05 * x.min(y) { x.min(y) } else { exact };
-                assert!((depth - shared).abs() < 1e-9, "{depth} at {x}, {y}");
-            }
-        }
-        for [x, y] in [[0.1, 0.21], [0.3, 0.1], [0.3, 0.4]] {
-            assert_eq!(faces(x, y).normals().len(), 1, "{x}, {y}");
-        }
-    }
-
-    /// Ways that differ by less than 1e-12 of their length count as equal: directions are off by the root of that.
-    #[test]
-    fn behind_the_corners_of_a_box_there_are_the_normals_of_its_sides() {
-        let bounds = (Vector::<2>::repeat(-3.0), Vector::<2>::repeat(5.0));
-        for angle in [0.0, 0.1, 0.4, 0.7, 1.3] {
-            let block = Shape::cuboid(Vector::<2>::zeros(), Vector::<2>::new(1.0, 2.0)).unwrap();
-            let block = block.turned(angle, Vector::<2>::zeros(), nalgebra::Vector3::z()).unwrap();
-            let turn = nalgebra::Rotation2::new(angle);
-            for [x, y] in [[0.1, 0.1], [0.9, 0.1], [0.1, 1.9], [0.9, 1.9]] {
-                let faces = block.ways_out(&(turn * Vector::<2>::new(x, y)), 0.0, &bounds);
-                assert_eq!(faces.normals().len(), 2, "{faces:?}");
-                let out = Vector::<2>::new(2.0 * x - 1.0, y - 1.0).map(f64::signum);
-                for normal in faces.normals() {
-                    let normal = turn.inverse() * normal;
-                    let axis = normal.iamax();
-                    let off = (normal[axis] - out[axis]).abs() + normal[1 - axis].abs();
-                    assert!(off < 3e-6, "{normal} at {x}, {y}, turned by {angle}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_round_wall_has_radial_normals() {
-        let center = Vector::<2>::new(1.0, 2.0);
-        let ball = Shape::ball(center, 0.5).unwrap();
-        let bounds = (Vector::<2>::repeat(-3.0), Vector::<2>::repeat(5.0));
-        for angle in [0.1_f64, 0.9, 2.0, 4.0] {
-            let radial = Vector::<2>::new(angle.cos(), angle.sin());
-            for layer in [0.0, 0.2] {
-                let faces = ball.ways_out(&(center + radial * 0.4), layer, &bounds);
-                // Lengths are found to 1e-8 m of 0.1 m, and grow with the square of the turn.
-                let way = faces.between();
-                assert!((way - radial).norm() < 2e-3, "{way} for {radial}");
-                assert_eq!(faces.normals().len(), 1, "{faces:?}");
-            }
-        }
-        // Two and a half, five and ten spacings of 0.1 m in radius, in the first layer and in the next.
-        let bounds = (Vector::<3>::repeat(-3.0), Vector::<3>::repeat(3.0));
-        for (radius, number) in
-            [0.25, 0.5, 1.0].into_iter().flat_map(|r| (0..40).map(move |n| (r, n)))
-        {
-            let ball = Shape::ball(Vector::<3>::zeros(), radius).unwrap();
-            let [turn, up] = [0.7 * f64::from(number), 0.05 * f64::from(number) - 0.975];
-            let around = (1.0 - up * up).sqrt();
-            let radial = Vector::<3>::new(around * turn.cos(), around * turn.sin(), up);
-            for depth in [0.02, 0.05, 0.09, 0.15] {
-                let faces = |layer| ball.ways_out(&(radial * (radius - depth)), layer, &bounds);
-                // Ways within 5 % of the shortest may be told apart on the smallest ball; a layer adds none.
-                let [alone, layer] = [0.0, 0.099].map(faces);
-                assert_eq!(alone, layer, "{depth} in {radius} at {radial}");
-            }
-        }
-        // On the bounds there is no way out.
-        assert_eq!(ball.ways_out(&center, 0.0, &(center, center)), Faces::default());
+        (least, direction)
     }
 }

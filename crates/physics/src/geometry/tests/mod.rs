@@ -7,3 +7,4 @@ mod probe;
 mod region;
 mod shape;
 mod surroundings;
+mod way_out;

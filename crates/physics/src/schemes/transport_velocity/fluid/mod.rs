@@ -81,7 +81,8 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
 /// conserve: the discrete force and divergence are not exact adjoints.
 ///
 /// Viscous forces, and what diffuses velocities, act along `u_ab` and turn the fluid, and what follows another level does
-/// not feel them; the corrections neither come in pairs, nor do particles move along their velocity. What is removed takes its momentum along.
+/// not feel them; the corrections neither come in pairs, nor do particles move along their velocity, and pressures with
+/// corrected gradients turn the fluid, too. What is removed takes its momentum along.
 pub(super) const LEDGER: Accounts = Accounts {
     mechanisms: &[
         "pressure",
@@ -107,7 +108,7 @@ pub(super) const LEDGER: Accounts = Accounts {
     ],
     is_kicked: true,
 };
-const PRESSURE: Entry = LEDGER.entry("pressure");
+const PRESSURE: Entry = LEDGER.entry_by("pressure", "corrections");
 const TRANSPORT: Entry = LEDGER.entry_by("transport", "corrections");
 const WALLS: Entry = LEDGER.entry("walls");
 const OPENINGS: Entry = LEDGER.entry("openings");

@@ -2,12 +2,13 @@
 
 use piola_formulas::fluid;
 use piola_formulas::pairs::corrected::{CorrectedRateSums, CorrectedRates};
-use piola_formulas::pairs::fluid::{RateConstants, RateSums, Rates as Law};
+use piola_formulas::pairs::fluid::{FluidSide, RateConstants, RateSums, Rates as Law};
+use piola_formulas::pairs::{Components, MovingPair, Of, PairLaw};
 
 use super::{Common, Rates, WeaklyCompressible};
 use crate::Vector;
 use crate::operators::{Among, OfCenter, Term, gather};
-use crate::schemes::transport_velocity::Divergence;
+use crate::schemes::transport_velocity::{Divergence, Side};
 
 impl<const D: usize> WeaklyCompressible<D> {
     /// Fills `rates` from the sides, for the fluid at a time in s.
@@ -54,11 +55,8 @@ impl<const D: usize> WeaklyCompressible<D> {
         time: f64,
         rates: &mut [Rates],
     ) {
-        let half_force = half_force::<D, FALLS>(common, time);
         let law = Law::<D, CORRECTS, MOVES, FALLS>(constants);
-        let sum = Term { law, source: (common.sides.as_slice(), half_force), among: Among::All };
-        let close = |_: usize, sums: &RateSums<f64, D>, row: &mut Rates| *row = Rates::of(sums);
-        gather(&common.support, &sum, rates, |place| common.active(place), close);
+        fill_rates::<D, FALLS, _>(common, time, law, rates, |_, sums| *sums);
     }
 
     /// The same with corrected gradients, theory (109).
@@ -69,38 +67,36 @@ impl<const D: usize> WeaklyCompressible<D> {
         time: f64,
         rates: &mut [Rates],
     ) {
-        let half_force = half_force::<D, FALLS>(common, time);
         let law = CorrectedRates::<D, FALLS>(constants);
-        let sum = Term { law, source: (common.sides.as_slice(), half_force), among: Among::All };
-        let close = |place: usize, sums: &CorrectedRateSums<f64, D>, row: &mut Rates| {
-            *row = Rates::of(&sums.rates(&common.sides[place].deviation));
-        };
-        gather(&common.support, &sum, rates, |place| common.active(place), close);
+        let of = |side: &Side<D>, sums: &CorrectedRateSums<_, D>| sums.rates(&side.deviation);
+        fill_rates::<D, FALLS, _>(common, time, law, rates, of);
     }
 }
 
-impl Rates {
-    /// Those of these sums.
-    fn of<const D: usize>(sums: &RateSums<f64, D>) -> Self {
-        Self {
-            divergence: sums.divergence,
-            pressure_transport: sums.pressure_transport,
-            pressure_diffusion: sums.pressure_diffusion,
-        }
-    }
-}
-
-/// Half of the body force g in m/s^2 at places. Times the densities of two particles it is the gradient of the pressure
-/// between them in a fluid at rest, which must not diffuse out of a free surface.
-fn half_force<const D: usize, const FALLS: bool>(
+/// Fills the rates that a law has sums `of`, with the side of a particle.
+fn fill_rates<const D: usize, const FALLS: bool, L>(
     common: &Common<D>,
     time: f64,
-) -> OfCenter<impl Fn(usize) -> Vector<D> + Sync> {
-    OfCenter(move |place: usize| match FALLS {
+    law: L,
+    rates: &mut [Rates],
+    of: impl Fn(&Side<D>, &Of<L::Sums, f64>) -> RateSums<f64, D> + Sync,
+) where
+    L: PairLaw<Pair = MovingPair<D>, Side = (FluidSide<D>, Components<D>)>,
+{
+    // Times the densities of two particles, half of the body force g in m/s^2 is the gradient of the pressure between them
+    // in a fluid at rest, which must not diffuse out of a free surface.
+    let half_force = OfCenter(|place: usize| match FALLS {
         true => {
             let number = common.support.list().numbers()[place] as usize;
             common.body_force_at(number, place, time) * 0.5
         }
         false => Vector::zeros(),
-    })
+    });
+    let sum = Term { law, source: (common.sides.as_slice(), half_force), among: Among::All };
+    let close = |place: usize, sums: &Of<L::Sums, f64>, row: &mut Rates| {
+        let RateSums { divergence, pressure_transport, pressure_diffusion } =
+            of(&common.sides[place], sums);
+        *row = Rates { divergence, pressure_transport, pressure_diffusion };
+    };
+    gather(&common.support, &sum, rates, |place| common.active(place), close);
 }
