@@ -36,7 +36,7 @@ pub(crate) fn slope<const D: usize>(
 
 /// The rays from a point inside a shape that is `depth` m below its boundary, as far as the corners `bounds`, a box whose
 /// diagonal is `extent` m.
-struct Rays<'a, const D: usize> {
+pub(super) struct Rays<'a, const D: usize> {
     shape: &'a Shape<D>,
     point: &'a Vector<D>,
     depth: f64,
@@ -79,7 +79,7 @@ impl<const D: usize> Shape<D> {
         let starts = (0..3usize.pow(D as u32)).filter_map(|number| {
             let turn = |axis: usize| (number / 3usize.pow(axis as u32) % 3) as f64 - 1.0;
             let start = Vector::<D>::from_fn(|axis, _| turn(axis)).try_normalize(0.0)?;
-            let found = rays.length(&start, (MOST_OF_START * shortest).max(2.0 * layer));
+            let found = rays.length(&start, (1.01 * MOST_OF_START * shortest).max(2.0 * layer));
             shortest = shortest.min(found);
             Some((found, start))
         });
@@ -122,7 +122,11 @@ impl<const D: usize> Shape<D> {
         faces.into_iter().map(|(length, normal)| (normal, length)).collect()
     }
 
-    fn rays<'a>(&'a self, point: &'a Vector<D>, bounds: &'a (Vector<D>, Vector<D>)) -> Rays<'a, D> {
+    pub(super) fn rays<'a>(
+        &'a self,
+        point: &'a Vector<D>,
+        bounds: &'a (Vector<D>, Vector<D>),
+    ) -> Rays<'a, D> {
         let (depth, extent) = (self.depth(point), (bounds.1 - bounds.0).norm());
         Rays { shape: self, point, depth, bounds, extent }
     }
@@ -202,7 +206,7 @@ impl<const D: usize> Shape<D> {
         bounds: &(Vector<D>, Vector<D>),
     ) -> Option<[Faces<D>; 2]> {
         let rays = self.rays(point, bounds);
-        let length = |direction: &Vector<D>| rays.length(direction, f64::INFINITY);
+        let length = |direction: &Vector<D>| rays.length(direction, reach);
         let nearest = self.ways_out(point, layer, bounds);
         let across = nearest.normals().iter().find(|normal| length(&-**normal) < reach)?;
         let along = |axis: usize| {
@@ -255,8 +259,8 @@ fn apart<const D: usize>(ways: &[Vector<D>]) -> Vec<Vector<D>> {
 }
 
 impl<const D: usize> Rays<'_, D> {
-    /// Length of the way out along a direction, infinite if it leaves the bounds, or is known to be as long as `most`.
-    fn length(&self, direction: &Vector<D>, most: f64) -> f64 {
+    /// Length of the way out along a direction, infinite if it leaves the bounds, or is known to be longer than `most`.
+    pub(super) fn length(&self, direction: &Vector<D>, most: f64) -> f64 {
         let &Self { point, bounds, extent, .. } = self;
         let least = 1e-9 * extent;
         let (mut length, mut last) = (0.0, 0.0);
@@ -273,7 +277,7 @@ impl<const D: usize> Rays<'_, D> {
                     f64::INFINITY
                 };
             }
-            if length > extent || length >= most {
+            if length > extent || length > most {
                 break;
             }
             last = length;
@@ -283,10 +287,10 @@ impl<const D: usize> Rays<'_, D> {
     }
 
     /// Where a ray leaves the shape between two lengths, inside at the first one and outside at the second. Infinite if it is
-    /// inside at `most`.
+    /// inside beyond `most`.
     fn crossing(&self, direction: &Vector<D>, [mut inner, mut outer]: [f64; 2], most: f64) -> f64 {
         for _ in 0..HALVINGS {
-            if inner >= most {
+            if inner > most {
                 return f64::INFINITY;
             }
             let middle = 0.5 * (inner + outer);

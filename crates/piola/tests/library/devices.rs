@@ -211,6 +211,16 @@ fn what_a_device_cannot_do_is_refused_by_name() {
             &["scheme.corrected_gradients=true"],
             "corrected gradients of a fluid do",
         ),
+        ("open/channel", &[], "an open boundary does not run on devices"),
+        (
+            "ctvf/taylor-green",
+            &[
+                "scheme.refine=[{ kind = 'box', min = [0.25, 0.25], max = [0.75, 0.75] }]",
+                "scheme.density='continuity'",
+            ],
+            "a fluid with regions of finer spacing does not run on devices",
+        ),
+        ("ctvf/still-water", &["scheme.damping='x'"], "damping does not run on devices"),
         (
             "ctvf/taylor-green",
             &["scheme.pressure='state_equation'"],

@@ -159,3 +159,45 @@ fn a_round_wall_has_radial_normals() {
     // On the bounds there is no way out.
     assert_eq!(ball.ways_out(&center, 0.0, &(center, center)), Faces::default());
 }
+
+/// A ray is as long with a bound on its length as without, or infinite if it is longer than that.
+#[test]
+fn bounds_on_rays_change_no_length() {
+    fn check<const D: usize>(shape: &Shape<D>, bounds: &(Vector<D>, Vector<D>)) {
+        let (low, high) = shape.bounding_box();
+        let part =
+            |number: usize, k: usize| (number as f64 * [2.0_f64, 3.0, 5.0, 7.0][k].sqrt()).fract();
+        let (mut shorter, mut longer) = (0, 0);
+        for number in 1..200 {
+            let point =
+                Vector::<D>::from_fn(|axis, _| low[axis] + (high - low)[axis] * part(number, axis));
+            if shape.depth(&point) < 0.0 {
+                continue;
+            }
+            let rays = shape.rays(&point, bounds);
+            let way = Vector::<D>::from_fn(|axis, _| part(number + 7, axis + 1) - 0.5).normalize();
+            let whole = rays.length(&way, f64::INFINITY);
+            let depth = shape.depth(&point);
+            for most in [0.0, 0.5 * depth, depth, 1.5 * depth, whole, 2.0 * whole] {
+                let found = rays.length(&way, most);
+                assert!(
+                    found == whole || found.is_infinite() && whole > most,
+                    "{found} for {whole}"
+                );
+                shorter += usize::from(found < f64::INFINITY);
+                longer += usize::from(found.is_infinite() && whole.is_finite());
+            }
+        }
+        assert!(shorter > 20 && longer > 20, "{shorter} {longer}");
+    }
+    let (tank, bounds) = tank();
+    check(&tank, &bounds);
+    let around = (Vector::<2>::repeat(-5.0), Vector::<2>::repeat(9.0));
+    let plate = Shape::cuboid(Vector::<2>::zeros(), Vector::<2>::new(0.3, 4.0)).unwrap();
+    check(&plate.turned(0.4, Vector::<2>::zeros(), nalgebra::Vector3::z()).unwrap(), &around);
+    check(&Shape::ball(Vector::<2>::new(0.2, 0.1), 0.5).unwrap(), &around);
+    let around = (Vector::<3>::repeat(-5.0), Vector::<3>::repeat(9.0));
+    let block = Shape::cuboid(Vector::<3>::zeros(), Vector::<3>::new(1.0, 2.0, 0.5)).unwrap();
+    let ball = Shape::ball(Vector::<3>::new(0.5, 1.0, 0.5), 0.3).unwrap();
+    check(&Shape::difference(block, vec![ball]).unwrap(), &around);
+}

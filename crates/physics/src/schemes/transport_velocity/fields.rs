@@ -20,5 +20,5 @@ columns! {
     derived(0) wall: Scalar, "1", "1 for particles of walls, 0 for others";
     constant normal: Vector, "1", "unit normal of walls, towards the fluid";
     derived(1) neighbors: Scalar, "1", "number of neighbours inside the support";
-    derived(0) mass: Scalar, "kg", "mass, for 1 m in missing dimensions; of a wall that of its volume at its density";
+    derived(0) mass: Scalar, "kg", "mass, for 1 m in missing dimensions; of a wall its volume times its density, or times that at rest beside open boundaries or finer regions without `density_relaxation`";
 }

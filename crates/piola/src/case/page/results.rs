@@ -163,6 +163,7 @@ impl CaseResults {
     pub fn keep(&mut self, earlier: &Self) {
         let is_part =
             self.rows.iter().any(|row| row.is_long || row.is_interrupted || row.has_no_run);
+        let mut keeps = false;
         for row in self.rows.iter_mut().filter(|row| !row.was_run() || row.has_no_run) {
             let same = || earlier.rows.iter().filter(|known| known.was_run() && known.is_same(row));
             // Two checks may ask for different bounds of one quantity, and a check may have moved.
@@ -175,12 +176,19 @@ impl CaseResults {
             let known = known.or_else(|| same().find(asks));
             let known = known.or_else(|| same().find(|_| !row.is_interrupted));
             if let Some(known) = known {
+                keeps = true;
                 // What the check says today of the value and its worth stays; why it is not met is only told of values.
                 let (against, bound) = (row.against, row.bound.clone());
                 let unmet = row.unmet.as_ref().or(known.unmet.as_ref()).filter(|_| !known.pass);
                 let unmet = unmet.cloned();
                 *row = Row { check: row.check, against, bound, unmet, ..known.clone() };
             }
+        }
+        if keeps {
+            self.runs = self.runs.max(earlier.runs);
+            let [[least, most], [earlier_least, earlier_most]] =
+                [self.particles, earlier.particles];
+            self.particles = [least.min(earlier_least), most.max(earlier_most)];
         }
         let kept = earlier.charts.iter().filter(|_| is_part);
         let new: Vec<_> = kept.filter(|chart| !self.charts.contains(chart)).cloned().collect();

@@ -81,8 +81,9 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
 /// conserve: the discrete force and divergence are not exact adjoints.
 ///
 /// Viscous forces, and what diffuses velocities, act along `u_ab` and turn the fluid, and what follows another level does
-/// not feel them; the corrections neither come in pairs, nor do particles move along their velocity, and pressures with
-/// corrected gradients turn the fluid, too. What is removed takes its momentum along.
+/// not feel them; the corrections neither come in pairs, nor do particles move along their velocity. What is removed takes
+/// its momentum along. Pressures are in no account of the momentum, so that its balance tells whether they come in pairs; with
+/// corrected gradients they turn the fluid, theory (110).
 pub(super) const LEDGER: Accounts = Accounts {
     mechanisms: &[
         "pressure",
@@ -108,7 +109,7 @@ pub(super) const LEDGER: Accounts = Accounts {
     ],
     is_kicked: true,
 };
-const PRESSURE: Entry = LEDGER.entry_by("pressure", "corrections");
+const PRESSURE: Entry = LEDGER.entry("pressure");
 const TRANSPORT: Entry = LEDGER.entry_by("transport", "corrections");
 const WALLS: Entry = LEDGER.entry("walls");
 const OPENINGS: Entry = LEDGER.entry("openings");

@@ -73,7 +73,7 @@ impl<const D: usize> WeaklyCompressible<D> {
     }
 }
 
-/// Fills the rates that a law has sums `of`, with the side of a particle.
+/// Gathers the sums of a law, and fills `rates` with what `of` makes of them and of the side of a particle.
 fn fill_rates<const D: usize, const FALLS: bool, L>(
     common: &Common<D>,
     time: f64,
