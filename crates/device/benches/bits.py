@@ -15,6 +15,9 @@ OGDEN = (
     "exponents = [1.3, 5.0, -2.0], bulk_modulus = 2e6, plane = 'strain' }"
 )
 SPALL = "body.{}.material.spall_strength=1.5e9"
+CORRECTED = "scheme.corrected_gradients=true"
+BY_LAW = "scheme.pressure='state_equation'"
+PUSHED = "scheme.shifting='background'"
 # Case, most steps, and what is set besides.
 RUNS = [
     ("ctvf/taylor-green", 100, "output.every=0.05"),
@@ -79,6 +82,13 @@ RUNS = [
         200,
         "body.bar.material.pressure_law={ kind = 'tait', exponent = 4.0 }",
     ),
+    ("ctvf/taylor-green", 100, CORRECTED),
+    ("ctvf/dam-break", 400, CORRECTED),
+    ("ctvf/dam-break-3d", 400, CORRECTED),
+    ("ctvf/dam-break", 400, BY_LAW),
+    ("ctvf/dam-break", 400, PUSHED, BY_LAW),
+    ("ctvf/rings", 200, PUSHED),
+    ("ctvf/swinging-plate", 200, PUSHED),
 ]
 
 

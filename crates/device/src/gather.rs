@@ -59,15 +59,19 @@ impl<const D: usize> Space<D> {
         }
     }
 
-    /// The column of counts that gathers in single precision read, and its numbers of a position in m: see
-    /// [`unit`](Self::unit). A position that is no number counts as any: lists have no neighbours of it.
-    pub fn counts(&self, position: &[Traced]) -> (Use, Vec<Traced>) {
-        let column = counts(loops::COUNTS, loops::counted(D));
+    /// The column of counts that gathers in single precision read.
+    pub fn counts(&self) -> Use {
+        counts(loops::COUNTS, loops::counted(D))
+    }
+
+    /// Its numbers of a position in m: see [`unit`](Self::unit). A position that is no number counts as any: lists have no
+    /// neighbours of it.
+    pub fn counted(&self, position: &[Traced]) -> Vec<Traced> {
         let count = |axis: usize| match position.get(axis) {
             Some(&place) => place * (1.0 / self.unit(axis)),
             None => Traced::from(0.0),
         };
-        (column, (0..column.width).map(count).collect())
+        (0..self.counts().width).map(count).collect()
     }
 
     /// The pair of two particles of this separation.

@@ -109,20 +109,28 @@ impl Tape {
     }
 }
 
-thread_local!(static TAPE: RefCell<Tape> = RefCell::default());
+thread_local!(static TAPE: RefCell<Option<Tape>> = RefCell::default());
 
 /// Runs a function on a new tape.
 pub(crate) fn recorded<R>(function: impl FnOnce() -> R) -> (R, Tape) {
-    let before = TAPE.take();
+    let before = TAPE.replace(Some(Tape::default()));
     let result = function();
-    (result, TAPE.replace(before))
+    (result, TAPE.replace(before).unwrap_or_default())
+}
+
+/// Does something with the tape that runs.
+fn on_tape<R>(act: impl FnOnce(&mut Tape) -> R) -> R {
+    TAPE.with_borrow_mut(|tape| {
+        act(tape.as_mut().expect("numbers are traced where a law is recorded"))
+    })
 }
 
 fn push(operation: Operation) -> u32 {
-    TAPE.with_borrow_mut(|tape| tape.push(operation))
+    on_tape(|tape| tape.push(operation))
 }
 
-/// A number of which a law is recorded. It makes sense within [`Law::record`](crate::Law::record) only.
+/// A number of which a law is recorded. It makes sense within its [`Law::record`](crate::Law::record) only: one that is
+/// made where no law is recorded panics, and one of another law is another number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traced(pub(crate) u32);
 
@@ -141,8 +149,7 @@ impl Traced {
 
     /// Constants are computed at once, with the bits that a machine would find.
     fn binary(self, function: Binary, other: Self) -> Self {
-        let constants =
-            TAPE.with_borrow(|tape| [self, other].map(|number| tape.constant(number.0)));
+        let constants = on_tape(|tape| [self, other].map(|number| tape.constant(number.0)));
         match (function, constants) {
             (Binary::Add, [Some(a), Some(b)]) => Self::from(a + b),
             (Binary::Subtract, [Some(a), Some(b)]) => Self::from(a - b),
@@ -175,7 +182,7 @@ impl Traced {
     }
 
     fn is_zero_constant(self) -> bool {
-        TAPE.with_borrow(|tape| tape.constant(self.0)) == Some(0.0)
+        on_tape(|tape| tape.constant(self.0)) == Some(0.0)
     }
 }
 
@@ -239,7 +246,7 @@ impl Number for Traced {
         until: impl Fn(&[Self; N]) -> Truth,
         step: impl Fn([Self; N]) -> [Self; N],
     ) -> [Self; N] {
-        let number = TAPE.with_borrow_mut(|tape| {
+        let number = on_tape(|tape| {
             let start = state.iter().map(|number| number.0).collect();
             tape.loops.push(Loop { most, start, until: 0, next: Vec::new() });
             tape.loops.len() as u32 - 1
@@ -247,7 +254,7 @@ impl Number for Traced {
         let inside = std::array::from_fn(|i| Self(push(Operation::State(number, i as u32))));
         let until = until(&inside).0;
         let next = step(inside).map(|number| number.0).to_vec();
-        TAPE.with_borrow_mut(|tape| {
+        on_tape(|tape| {
             let recorded = &mut tape.loops[number as usize];
             (recorded.until, recorded.next) = (until, next);
         });

@@ -1,7 +1,12 @@
-use piola_device::{Law, Operations, laws};
+use std::cell::{Cell, RefCell};
+
+use piola_device::{Law, Operations, Traced, filled, flat, laws};
 use piola_formulas::Number;
 use piola_formulas::hyperelastic::HyperelasticResponse;
 use piola_formulas::kernels::Kernel;
+use piola_formulas::pairs::corrected::{CorrectedRateSum, GradientSide, GradientSum};
+use piola_formulas::pairs::fluid::RateSum;
+use piola_formulas::pairs::{Components, Of, Record};
 use piola_formulas::volumetric::VolumetricResponse;
 
 use super::{assert_bits, random};
@@ -88,6 +93,63 @@ fn equations_of_state_have_the_bits_of_the_processor() {
             compare(&law, &[density, energy], &expected);
         }
     }
+}
+
+/// A record of plain numbers, and the numbers of one.
+fn plain<R: Record>(numbers: &[f64]) -> Of<R, f64> {
+    let next = Cell::new(0);
+    R::map([&R::zero::<f64>()], &|[_]: [f64; 1]| numbers[next.replace(next.get() + 1)])
+}
+fn numbers<R: Record>(record: &Of<R, f64>) -> Vec<f64> {
+    let all = RefCell::new(Vec::new());
+    R::map([record], &|[number]: [f64; 1]| {
+        all.borrow_mut().push(number);
+        number
+    });
+    all.into_inner()
+}
+
+/// What corrected gradients make of sums, of moments that are inverted and of others.
+fn corrected_gradients_have_bits<const D: usize>(random: &mut impl FnMut() -> f64) {
+    let named = |name: &str, count: usize| (0..count).map(|k| format!("{name}{k}")).collect();
+    let outputs = |all: Vec<Traced>| {
+        all.into_iter().enumerate().map(|(k, number)| (format!("y{k}"), number)).collect()
+    };
+    let inputs: Vec<String> = named("x", GradientSum::<D>::NUMBERS);
+    let gradients = Law::record("gradients", inputs, |x| {
+        outputs(flat::<GradientSide<D>>(&filled::<GradientSum<D>>(x).gradients()))
+    });
+    type Rates<const D: usize> = (CorrectedRateSum<D>, Components<D>);
+    let inputs: Vec<String> = named("x", Rates::<D>::NUMBERS);
+    let rates = Law::record("rates", inputs, |x| {
+        let (sums, deviation) = filled::<Rates<D>>(x);
+        outputs(flat::<RateSum<D>>(&sums.rates(&deviation)))
+    });
+    let (of_gradients, of_rates) = (GradientSum::<D>::NUMBERS, Rates::<D>::NUMBERS);
+    for size in [0.01, 1.0, 3.0] {
+        for _ in 0..200 {
+            let count = of_gradients.max(of_rates);
+            let mut x: Vec<f64> = (0..count).map(|_| size * (2.0 * random() - 1.0)).collect();
+            // Nearly the identity as often as not.
+            if random() < 0.5 {
+                (0..D).for_each(|i| x[i * D + i] = 1.0 + 0.1 * x[i * D + i]);
+            }
+            let sums = plain::<GradientSum<D>>(&x);
+            let expected = numbers::<GradientSide<D>>(&sums.gradients());
+            compare(&gradients, &x[..of_gradients], &expected);
+            let (sums, deviation) = plain::<Rates<D>>(&x);
+            let expected = numbers::<RateSum<D>>(&sums.rates(&deviation));
+            compare(&rates, &x[..of_rates], &expected);
+        }
+    }
+}
+
+#[test]
+fn corrected_gradients_have_the_bits_of_the_processor() {
+    let mut random = random(4);
+    corrected_gradients_have_bits::<1>(&mut random);
+    corrected_gradients_have_bits::<2>(&mut random);
+    corrected_gradients_have_bits::<3>(&mut random);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 use std::path::Path;
 
 use piola_device::{
-    Among, Dialect, Frozen, Gather, Language, Layout, Order, Pass, Precision, Rows, Space, cuda,
-    difference, laws, own,
+    Among, Dialect, Frozen, Gather, Language, Layout, Order, Pass, Precision, Rows, Space, Traced,
+    cuda, difference, laws, own,
 };
 use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::fluid::{FULL, ForceConstants, ForceSum, Forces, Viscous};
@@ -159,4 +159,10 @@ fn counts_tell_ways_between_places() {
             );
         }
     }
+}
+
+#[test]
+#[should_panic(expected = "numbers are traced where a law is recorded")]
+fn a_number_that_is_traced_where_no_law_is_recorded_panics() {
+    let _ = Traced::from(1.0);
 }

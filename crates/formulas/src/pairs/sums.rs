@@ -209,6 +209,13 @@ pub struct Background<const D: usize> {
     pub smoothing_length: f64,
 }
 
+impl<const D: usize> Background<D> {
+    /// That of forces with a kernel and a smoothing length in m: it sees the nearest neighbours alone.
+    pub fn of(kernel: Kernel, smoothing_length: f64) -> Self {
+        Self { kernel, smoothing_length: 0.5 * smoothing_length }
+    }
+}
+
 impl<const D: usize> PairLaw for Background<D> {
     type Pair = MovingPair<D>;
     type Side = OwnSide<D>;

@@ -70,14 +70,15 @@ fields = ["velocity", "pressure", "density", "surface", "wall"]
 /// The steps when four drops have been removed and four have not.
 const BETWEEN: u64 = 363;
 
-fn tank(device: &str) -> Case {
-    let overrides = vec![format!("compute.device='{device}'")];
+fn tank(device: &str, set: &[&str]) -> Case {
+    let device = format!("compute.device='{device}'");
+    let overrides = set.iter().map(|text| (*text).to_owned()).chain([device]).collect();
     let options = LoadOptions { overrides, ..LoadOptions::default() };
     case::parse(TANK, "test", &options).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 fn session(device: &str) -> Session {
-    Session::new(&tank(device)).unwrap_or_else(|problems| panic!("{problems}"))
+    Session::new(&tank(device, &[])).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 /// A run into a folder that is stopped after some steps.
@@ -137,6 +138,22 @@ fn what_a_device_removes_leaves_the_files_of_the_processor() {
         let what = format!("from {} to {}", computers[first], computers[then]);
         run(computers[then], &of(computers[first]), true, u64::MAX);
         assert_same(&of("whole"), &of(computers[first]), &what);
+    }
+}
+
+/// With corrected gradients, and with pressures by the law of state and background pressures.
+#[test]
+fn other_forces_remove_what_they_do_on_the_processor() {
+    let Some(device) = device() else { return };
+    let pushed = ["scheme.pressure='state_equation'", "scheme.shifting='background'"];
+    for set in [&["scheme.corrected_gradients=true"][..], &pushed] {
+        let [here, there] = ["processor", &device].map(|device| {
+            let case = tank(device, set);
+            let session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+            session.run(&AtomicBool::new(false), &mut |_| {}).expect("no file is written")
+        });
+        assert!(values(&here, "run.removed")[0] > 0.0, "{set:?}");
+        assert_eq!(here.tables, there.tables, "{set:?}");
     }
 }
 

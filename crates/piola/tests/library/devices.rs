@@ -43,7 +43,7 @@ pub(super) fn tables(finished: &Finished) -> Vec<u64> {
 }
 
 /// Fluids in periodic boxes, between walls at rest and in motion, with free surfaces and body forces, in 2D and 3D.
-const CASES: [(&str, &[&str]); 14] = [
+const CASES: [(&str, &[&str]); 28] = [
     ("ctvf/taylor-green", &["time.end=0.1", "output.table_every=0.01"]),
     (
         "ctvf/taylor-green",
@@ -65,21 +65,42 @@ const CASES: [(&str, &[&str]); 14] = [
         "ctvf/still-water",
         &["time.end=0.05", "load+={ kind = 'body_force', acceleration = ['sin(50 * t)', '0'] }"],
     ),
-    (
-        "ctvf/still-water",
-        &[
-            "time.end=0.05",
-            "scheme.escaped='remove'",
-            "boundary+={ name = 'shake', body = 'tank', where = { kind = 'all' }, velocity = { x = '0.3 * sin(30 * t)', y = '0.1' } }",
-        ],
-    ),
+    ("ctvf/still-water", &["time.end=0.05", "scheme.escaped='remove'", SHAKEN]),
     ("ctvf/taylor-green-3d", &["time.end=0.05", "scheme.density='continuity'"]),
     ("ctvf/cavity", &["time.end=0.2", "output.table_every=0.05"]),
     ("ctvf/poiseuille", &["time.end=0.05"]),
     ("ctvf/still-water", &["time.end=0.1"]),
     ("ctvf/dam-break-3d", &["time.end=0.05"]),
     ("ctvf/dam-break", &["time.end=0.05"]),
+    // Corrected gradients: without and with walls, surfaces, body forces and artificial viscosity.
+    ("ctvf/taylor-green", &["time.end=0.05", CORRECTED]),
+    ("ctvf/taylor-green-3d", &["time.end=0.05", CORRECTED, "scheme.shifting='none'"]),
+    ("ctvf/cavity", &["time.end=0.1", CORRECTED, "scheme.artificial_viscosity=0.1"]),
+    ("ctvf/dam-break-3d", &["time.end=0.05", CORRECTED, "scheme.artificial_viscosity=0.02"]),
+    (
+        "ctvf/taylor-green",
+        &[
+            "time.end=0.05",
+            CORRECTED,
+            "load+={ kind = 'body_force', acceleration = ['sin(50 * t)', '0'] }",
+        ],
+    ),
+    // Pressures by the law of state, with densities that are sums or integrated, and that relax.
+    ("ctvf/taylor-green", &["time.end=0.05", BY_LAW]),
+    ("ctvf/taylor-green", &["time.end=0.05", BY_LAW, "scheme.density='continuity'"]),
+    ("ctvf/dam-break", &["time.end=0.1", BY_LAW]),
+    ("ctvf/dam-break", &["time.end=0.1", BY_LAW, CORRECTED]),
+    ("ctvf/poiseuille", &["time.end=0.05", CORRECTED]),
+    ("ctvf/cavity", &["time.end=0.1", PUSHED]),
+    ("ctvf/cavity", &["time.end=0.1", PUSHED, CORRECTED]),
+    ("ctvf/dam-break", &["time.end=0.1", PUSHED, BY_LAW]),
+    ("ctvf/still-water", &["time.end=0.05", CORRECTED, SHAKEN]),
 ];
+
+const SHAKEN: &str = "boundary+={ name = 'shake', body = 'tank', where = { kind = 'all' }, velocity = { x = '0.3 * sin(30 * t)', y = '0.1' } }";
+const BY_LAW: &str = "scheme.pressure='state_equation'";
+const PUSHED: &str = "scheme.shifting='background'";
+const CORRECTED: &str = "scheme.corrected_gradients=true";
 
 #[test]
 fn a_device_has_the_bits_of_the_processor() {
@@ -90,27 +111,56 @@ fn a_device_has_the_bits_of_the_processor() {
         for session in [&mut here, &mut there] {
             session.run_until(0.5 * *session.case().time.end).expect("no file is written");
         }
-        assert!(ends_with(&mut here) == ends_with(&mut there), "{name}, half way");
+        assert!(ends_with(&mut here) == ends_with(&mut there), "{name} {set:?}, half way");
         let [here, there] = [here, there].map(finish);
-        assert_eq!(here.summary.steps, there.summary.steps, "{name}");
+        assert_eq!(here.summary.steps, there.summary.steps, "{name} {set:?}");
         assert!(here.summary.steps > 10, "{name} takes {} steps only", here.summary.steps);
-        assert!(tables(&here) == tables(&there), "{name}");
+        assert!(tables(&here) == tables(&there), "{name} {set:?}");
     }
 }
 
 #[test]
 fn a_run_goes_on_anywhere() {
     let Some(device) = device() else { return };
-    let set = ["time.end=0.1", "output.table_every=0.02"];
-    let of = |device: &str| session(&load("ctvf/cavity", &set, device));
-    let expected = tables(&finish(of("processor")));
-    for (first, then) in [(device.as_str(), "processor"), ("processor", &device)] {
-        let mut begun = of(first);
-        begun.run_until(0.05).expect("no file is written");
-        let checkpoint = begun.checkpoint();
-        let mut resumed = of(then);
-        resumed.resume(checkpoint).expect("it is of the same case");
-        assert!(tables(&finish(resumed)) == expected, "from {first} to {then}");
+    for more in [&[][..], &[PUSHED, BY_LAW], &[CORRECTED]] {
+        let set = [&["time.end=0.1", "output.table_every=0.02"], more].concat();
+        let of = |device: &str| session(&load("ctvf/cavity", &set, device));
+        let expected = tables(&finish(of("processor")));
+        for (first, then) in [(device.as_str(), "processor"), ("processor", &device)] {
+            let mut begun = of(first);
+            begun.run_until(0.05).expect("no file is written");
+            let checkpoint = begun.checkpoint();
+            let mut resumed = of(then);
+            resumed.resume(checkpoint).expect("it is of the same case");
+            assert!(tables(&finish(resumed)) == expected, "{more:?} from {first} to {then}");
+        }
+    }
+}
+
+/// A wave in a periodic line of fluid, where corrections have a form of their own.
+const LINE: &str = r#"
+version = 1
+title = "A wave in a line of fluid"
+dimension = 1
+domain = { periodic = { x = [0.0, 1.0] } }
+body = [{ name = "water", shape = { kind = "box", min = [0.0], max = [1.0] }, spacing = 0.02, material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 10.0 }, initial = { velocity = ["0.2 * sin(2 * pi * x)"] } }]
+scheme = { kind = "transport_velocity", density = "continuity", corrected_gradients = true }
+time = { end = 0.05 }
+output = { table_every = 0.01, every = 0.05 }
+"#;
+
+#[test]
+fn a_line_of_fluid_has_the_bits_of_the_processor() {
+    let Some(device) = device() else { return };
+    for more in ["scheme.artificial_viscosity=0.1", BY_LAW, PUSHED] {
+        let [here, there] = ["processor", &device].map(|device| {
+            let overrides = vec![format!("compute.device='{device}'"), more.to_owned()];
+            let options = LoadOptions { overrides, ..LoadOptions::default() };
+            let case = case::parse(LINE, "line.toml", &options);
+            finish(session(&case.unwrap_or_else(|problems| panic!("{problems}"))))
+        });
+        assert!(here.summary.steps > 10, "{more}: {} steps", here.summary.steps);
+        assert!(tables(&here) == tables(&there), "{more}");
     }
 }
 
@@ -191,11 +241,6 @@ fn what_a_device_cannot_do_is_refused_by_name() {
         ),
         ("coupled/plate", &[], "several systems in one case do not run on devices yet"),
         (
-            "ctvf/rings",
-            &["scheme.shifting='background'"],
-            "the stage `push` does not run on devices",
-        ),
-        (
             "ctvf/still-water",
             &["load=[{ kind = 'body_force', acceleration = ['0', '-9.81 * (1 + x)'] }]"],
             "a body force that depends on position does not run on devices yet: use one that is the same everywhere",
@@ -205,11 +250,10 @@ fn what_a_device_cannot_do_is_refused_by_name() {
             &[],
             "a wall that moves along a periodic axis does not run on devices yet: let it slide",
         ),
-        ("ctvf/taylor-green", &["scheme.shifting='ipst'"], "the stage `iterate` does not run"),
         (
-            "ctvf/still-water",
-            &["scheme.corrected_gradients=true"],
-            "corrected gradients of a fluid do",
+            "ctvf/taylor-green",
+            &["scheme.shifting='ipst'"],
+            "the stage `iterate` does not run on devices yet: use `scheme.shifting = \"spst\"`, \"background\" or \"none\"",
         ),
         ("open/channel", &[], "an open boundary does not run on devices"),
         (
@@ -220,12 +264,7 @@ fn what_a_device_cannot_do_is_refused_by_name() {
             ],
             "a fluid with regions of finer spacing does not run on devices",
         ),
-        ("ctvf/still-water", &["scheme.damping='x'"], "damping does not run on devices"),
-        (
-            "ctvf/taylor-green",
-            &["scheme.pressure='state_equation'"],
-            "by the law of state does not",
-        ),
+        ("ctvf/still-water", &["scheme.damping='x'", CORRECTED], "damping does not run on devices"),
     ] {
         let text = refusal(name, set, &device);
         assert!(text.contains(what), "{name}: {text}");
@@ -252,10 +291,12 @@ fn all_passes_of_all_formulations_compile_for_cuda() {
         eprintln!("NOT RUN: there is no NVRTC on this machine");
         return;
     }
-    let cases: [(&str, &[&str]); 7] = [
+    let cases: [(&str, &[&str]); 9] = [
         ("ctvf/taylor-green", &[]),
+        ("ctvf/dam-break-3d", &[CORRECTED]),
+        ("ctvf/dam-break", &[PUSHED, BY_LAW]),
         ("ctvf/dam-break-3d", &["scheme.escaped='remove'"]),
-        ("ctvf/rings", &["scheme.self_contact=10.0"]),
+        ("ctvf/rings", &["scheme.self_contact=10.0", PUSHED]),
         ("ctvf/compression", &[]),
         ("total-lagrangian/presets", &["scheme.artificial_viscosity=[1, 2]", "scheme.damping=0.1"]),
         ("elastodynamics/wave-3d", &[]),

@@ -61,7 +61,7 @@ const PUMP: &str = "boundary.piston.velocity.y='-10 * sin(1e5 * t)'";
 const SPALL: &str = "body.projectile.material.spall_strength=1e8";
 
 /// Hypoelastic solids: alone, in contact of each kind, at walls, with what flows, tears and heats.
-const HYPOELASTIC: [(&str, &[&str]); 13] = [
+const HYPOELASTIC: [(&str, &[&str]); 16] = [
     ("ctvf/swinging-plate", &["scheme.pressure='edac'", "scheme.corrected_gradients=false"]),
     (
         "ctvf/swinging-plate",
@@ -78,6 +78,10 @@ const HYPOELASTIC: [(&str, &[&str]); 13] = [
     ("ctvf/taylor-bar", &["parameters.across=6"]),
     ("ctvf/taylor-bar", &["parameters.across=6", NO_SLIP, LEAD]),
     ("ctvf/compression", &["scheme.corrected_gradients=true", PUMP]),
+    ("ctvf/rings", &["scheme.shifting='background'", "scheme.self_contact=10.0"]),
+    // What is clamped there is not pushed.
+    ("ctvf/swinging-plate", &["scheme.shifting='background'"]),
+    ("ctvf/contact", &["scheme.shifting='background'", "body.left.material.bulk_modulus=4e7"]),
     ("ctvf/contact", &[]),
     ("ctvf/contact", &["scheme.contact='repulsive'", "body.left.material.bulk_modulus=4e7"]),
     ("ctvf/johnson-cook", &[]),
@@ -124,7 +128,7 @@ fn a_solid_goes_on_without_what_has_been_removed() {
 }
 
 /// What a step keeps for the next one: rates of places, viscous forces, planes that move, forces that change.
-const KEPT: [(&str, &[&str]); 9] = [
+const KEPT: [(&str, &[&str]); 10] = [
     ("dual-support/free-vibration", &["parameters.dx=1", "scheme.artificial_viscosity=[1, 2]"]),
     ("total-lagrangian/presets", &[PULL, PRESS, LOAD]),
     ("elastodynamics/biaxial", &[]),
@@ -137,6 +141,7 @@ const KEPT: [(&str, &[&str]); 9] = [
     ("ctvf/swinging-plate", &[SWING]),
     ("ctvf/compression", &[PUMP]),
     ("ctvf/rings", &[]),
+    ("ctvf/rings", &["scheme.shifting='background'"]),
 ];
 
 /// A session of a case with 40 steps, and the bits of its tables at the end.

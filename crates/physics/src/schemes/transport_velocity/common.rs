@@ -32,6 +32,13 @@ pub struct AtRest {
     pub wave_speed: f64,
 }
 
+impl AtRest {
+    /// `1 / (rho0 c)^2`: half of it times the square of a pressure is the energy of compression of a mass, over that mass.
+    pub(super) fn compliance(&self) -> f64 {
+        (self.density * self.wave_speed).powi(-2)
+    }
+}
+
 /// Particles of any continuum in the formulation.
 pub struct Common<const D: usize> {
     /// Reference state; the number of a particle is its index here.

@@ -5,7 +5,7 @@ use piola_device::{Device, Layout, Machine, Precision};
 
 use super::super::{AtSurface, Continuum, DensityRule, Shifting, Slip, TransportVelocity};
 use super::moving::Moving;
-use super::passes::{FORCES, Plan, drift_terms, kick_terms, side_width};
+use super::passes::{FORCES, Plan, drift_terms, side_width};
 use super::removal::Removal;
 use super::{OfMatter, OnDevice, walls};
 use crate::boundaries::BodyForce;
@@ -24,10 +24,11 @@ pub(super) const LAYOUT: Layout = Layout {
         "side", "rate", "force", "summed", "shear", "hold", "sliding", "faces", "mark", "near",
         "alone", "surface", "close_by", "reach", "sharp", "normal", "crowd", "escaped",
         "half_force", "spot", "matter", "waves", "continuum", "tension", "correction", "filling",
+        "gradients",
     ],
     planes: &[
         "place", "spot", "side", "half_force", "shear", "hold", "matter", "waves", "tension",
-        "correction",
+        "correction", "gradients",
     ],
 };
 
@@ -36,13 +37,9 @@ const COUNTED: usize = 1 << f32::MANTISSA_DIGITS;
 
 /// What of a settled case has no body for devices.
 fn refusal(shifting: Shifting) -> Option<DeviceRefusal> {
-    let stage = match shifting {
-        Shifting::Iterative { .. } => "iterate",
-        Shifting::Background { .. } => "push",
-        Shifting::None | Shifting::Sun { .. } => return None,
-    };
-    let instead = "use `scheme.shifting = \"spst\"` or \"none\"";
-    Some(DeviceRefusal::Stage { what: format!("the stage `{stage}`"), instead })
+    let instead = "use `scheme.shifting = \"spst\"`, \"background\" or \"none\"";
+    matches!(shifting, Shifting::Iterative { .. })
+        .then(|| DeviceRefusal::Stage { what: "the stage `iterate`".into(), instead })
 }
 
 impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
@@ -76,9 +73,14 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             periods: *periodic,
             reach: (1.0 + MovingSupport::<D>::SKIN) * common.support.list().support(),
             at_rest: first.filter(|first| common.at_rest.iter().all(|other| other == first)),
+            by_law: first.filter(|_| common.settings.is_algebraic() && !M::HAS_MATERIAL),
+            background: match common.settings.shifting {
+                Shifting::Background { most } => Some(most),
+                _ => None,
+            },
             sums_densities: common.settings.density == DensityRule::Summation,
             shifts: by_crowding,
-            spares: by_crowding && common.unshifted.contains(&true),
+            spares: common.settings.shifting != Shifting::None && common.unshifted.contains(&true),
             crowding: 1.0 / common.value_at_spacing(smoothing_length),
             seeks_surfaces: by_crowding && common.settings.free_surface,
             along_surfaces: common.settings.at_surface == AtSurface::Along,
@@ -104,16 +106,19 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             ("side", side_width(D)),
             ("force", FORCES * D),
             ("escaped", 1),
-            ("terms", kick_terms::<D, M>().max(drift_terms(D)).max(P::FIGURES)),
+            ("terms", plan.stored_terms::<M>().max(drift_terms(D)).max(P::FIGURES)),
             // Read by the pass of walls.
             ("gravity", D),
         ];
         if of_pairs == Precision::Single {
-            let (counts, _) = plan.space().counts(&[]);
+            let counts = plan.space().counts();
             all.push((counts.column, counts.width));
         }
         if plan.normals > 0 {
             all.push(("hold", 2 * D + 1));
+        }
+        if plan.background.is_some() {
+            all.push(("push", D));
         }
         if plan.seeks_surfaces {
             let marks = ["mark", "near", "alone", "surface", "close_by", "reach"];

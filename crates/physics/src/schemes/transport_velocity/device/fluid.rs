@@ -1,16 +1,20 @@
 //! A fluid on a device.
 
 use piola_device::{
-    Among, DeviceError, Dialect, Gather, Machine, Order, Pass, Space, Traced, local, own, spread,
-    through,
+    Among, DeviceError, Dialect, Gather, Machine, Order, Pass, Space, Traced, Use, flat as record,
+    local, own, spread, through,
+};
+use piola_formulas::pairs::corrected::{
+    CorrectedForces, CorrectedRateSum, CorrectedRates, CorrectedWall, CorrectedWallForces,
+    GradientSide, GradientSum, Gradients, VelocityGradient, WallMoment,
 };
 use piola_formulas::pairs::fluid::{
-    FULL, ForceConstants, ForceSum, Forces, NONE, RateConstants, RateSum, Rates, STRESS, Side,
-    Wall, WallForces,
+    FULL, ForceConstants, ForceSum, Forces, NONE, RateConstants, RateSum, RateSums, Rates, STRESS,
+    Side, Wall, WallForces,
 };
 use piola_formulas::pairs::sums::Density;
 use piola_formulas::pairs::wall::{Extrapolation, Surroundings};
-use piola_formulas::pairs::{Components, One};
+use piola_formulas::pairs::{Components, One, Record};
 use piola_formulas::{Number, fluid};
 
 use super::super::fluid::Ends;
@@ -37,6 +41,8 @@ pub(in super::super) struct FluidPlan<const D: usize> {
     rate_kind: (bool, bool, bool),
     force_constants: ForceConstants,
     force_kind: (u8, bool, bool),
+    /// nu_v of theory (111) in m^2/s, where gradients are corrected.
+    corrected: Option<f64>,
     compliance: f64,
     /// The rate in m^2/s^3 at which pressures relax, if they do, and one over what the kernel sums to over a lattice.
     relaxation: Option<[f64; 2]>,
@@ -54,18 +60,11 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
     fn of(system: &TransportVelocity<D>) -> Result<Self, DeviceRefusal> {
         let (common, matter) = (&system.common, &system.matter);
         let refuse = |what: &str, instead| Err(DeviceRefusal::Stage { what: what.into(), instead });
-        if common.settings.is_algebraic() {
-            let instead = "use `scheme.pressure = \"edac\"`";
-            return refuse("a pressure by the law of state", instead);
-        }
         if matter.is_open() {
             return refuse("an open boundary", "run it on the processor");
         }
         if matter.is_damped() {
             return refuse("damping", "run it on the processor");
-        }
-        if common.settings.corrects_gradients() {
-            return refuse("corrected gradients of a fluid", "run it on the processor");
         }
         let follows = common.settings.density == DensityRule::Continuity;
         let (rate_constants, rate_kind) = matter.rate_law(common);
@@ -78,6 +77,7 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
             rate_kind,
             force_constants,
             force_kind,
+            corrected: matter.velocity_diffusivity(common),
             compliance: matter.compliance(),
             relaxation: (common.settings.relaxes())
                 .then(|| [matter.relaxation(common), matter.lattice_sum().recip()]),
@@ -95,6 +95,7 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
         scratch.extend(self.relaxation.map(|_| ("filling", count)));
         scratch.extend(self.plan.sums_densities.then_some(("summed", count)));
         scratch.extend((self.plan.normals > 0).then_some(("shear", D * count)));
+        scratch.extend(self.of_gradients().map(|of| (of.column, of.width * count)));
         Room { scratch, filled: Vec::new() }
     }
 
@@ -113,6 +114,7 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
             all.push(self.densities(dialect, space));
         }
         all.extend(self.relaxation.map(|[_, scale]| self.excess(dialect, scale)));
+        all.extend(self.corrected.map(|_| self.gradients(dialect, space)));
         if plan.falls {
             all.push(self.fall(dialect));
         }
@@ -127,6 +129,8 @@ impl<const D: usize> OfMatter<D> for FluidPlan<D> {
             Stage::State if self.plan.sums_densities => &["densities", "state"],
             Stage::Rates if self.plan.falls => &["fall", "rates"],
             Stage::Own(Ends::Excess) => &["excess"],
+            Stage::Own(Ends::Gradients) => &["gradients"],
+            Stage::Own(Ends::Forces) => self.plan.passes_of(Stage::<Ends>::Forces),
             // Those of open boundaries and of damping are refused.
             _ => self.plan.passes_of(stage),
         }
@@ -186,13 +190,23 @@ impl<const D: usize> FluidPlan<D> {
     /// Densities and pressures that are functions of places or of each other, and squares of speeds.
     fn state(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![through("numbers", "wall", 1), own("side", side_width(D))];
-        reads.extend(self.plan.sums_densities.then_some(own("summed", 1)));
+        let is_read = match (self.plan.sums_densities, self.plan.by_law) {
+            (true, _) => Some(own("summed", 1)),
+            // Not from the side, which may be in single precision.
+            (false, Some(_)) => Some(through("numbers", "density", 1)),
+            (false, None) => None,
+        };
+        reads.extend(is_read);
         let writes = [own("side", side_width(D)), spread("terms", 1)];
         local(dialect, "state", &[], &reads, &writes, |mut x| {
             let wall = one(&mut x);
             let before: Side<Traced, D> = side(&mut x);
-            let density = if self.plan.sums_densities { one(&mut x) } else { before.density };
-            let pressure = before.pressure;
+            let density = if is_read.is_some() { one(&mut x) } else { before.density };
+            let Fluid { density: at_rest, wave_speed, .. } = self.fluid;
+            let pressure = match self.plan.by_law {
+                Some(_) => fluid::pressure(density, at_rest, wave_speed),
+                None => before.pressure,
+            };
             let mut after = before;
             after.set(before.mass(), density, pressure);
             let same = |a: Traced, b: Traced| a.at_most(b) & b.at_most(a);
@@ -204,11 +218,45 @@ impl<const D: usize> FluidPlan<D> {
         })
     }
 
+    /// The column of corrections and velocity gradients, where gradients are corrected.
+    fn of_gradients(&self) -> Option<Use> {
+        self.corrected.map(|_| own("gradients", GradientSide::<D>::NUMBERS))
+    }
+
+    /// What forces of walls read of a particle.
+    fn of_walls(&self) -> Vec<Use> {
+        let sides = [own("side", side_width(D)), own("shear", D)];
+        [&sides, self.of_gradients().as_slice()].concat()
+    }
+
+    /// Corrections of gradients, and gradients of velocities.
+    fn gradients(&self, dialect: Dialect, space: &Space<D>) -> Pass {
+        let columns = [own("side", side_width(D))];
+        let gather = Gather::<GradientSum<D>, _>::new(
+            dialect,
+            "gradients",
+            space,
+            Among::Active,
+            Order::Lanes,
+        )
+        .term(&VelocityGradient::<D>, &columns, Among::Active);
+        let gather = match self.plan.normals {
+            0 => gather,
+            _ => gather.term(&WallMoment::<D>, &columns, Among::Passive),
+        };
+        gather.close(&[], &[], self.of_gradients().as_slice(), |sums, _| {
+            record::<GradientSide<D>>(&sums.gradients())
+        })
+    }
+
     /// Rates of the pressure.
     fn rates(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let constants = self.rate_constants;
         let (corrects, moves, falls) = self.rate_kind;
         let columns = [own("side", side_width(D)), own("half_force", D)];
+        if self.corrected.is_some() {
+            return self.corrected_rates(dialect, space, &columns);
+        }
         let gather =
             Gather::<RateSum<D>, _>::new(dialect, "rates", space, Among::Active, Order::Lanes);
         macro_rules! of {
@@ -227,8 +275,26 @@ impl<const D: usize> FluidPlan<D> {
             (false, false, true) => of!(false, false, true),
             (false, false, false) => of!(false, false, false),
         };
-        gather.close(&[], &[], &[own("rate", 3)], |sums, _| {
-            vec![sums.divergence, sums.pressure_transport, sums.pressure_diffusion]
+        gather.close(&[], &[], &[own("rate", 3)], |sums, _| rates(sums))
+    }
+
+    /// The same with corrected gradients.
+    fn corrected_rates(&self, dialect: Dialect, space: &Space<D>, columns: &[Use]) -> Pass {
+        let (among, order) = (Among::Active, Order::Lanes);
+        let gather = Gather::<CorrectedRateSum<D>, _>::new(dialect, "rates", space, among, order);
+        let gather = match self.rate_kind.2 {
+            true => {
+                let law = CorrectedRates::<D, true>(self.rate_constants);
+                gather.term(&law, columns, Among::All)
+            }
+            false => {
+                let law = CorrectedRates::<D, false>(self.rate_constants);
+                gather.term(&law, columns, Among::All)
+            }
+        };
+        let (side, written) = ([own("side", side_width(D))], [own("rate", 3)]);
+        gather.close(&[], &side, &written, |sums, mut x| {
+            rates(&sums.rates(&self::side::<D>(&mut x).deviation))
         })
     }
 
@@ -271,12 +337,18 @@ impl<const D: usize> FluidPlan<D> {
             let pressure_rates = [compression, pressure_transport, pressure_diffusion, relaxing];
             let pressure_rate = pressure_rates.into_iter().reduce(|a, b| a + b).unwrap_or(zero);
             let mean = pressure + step * 0.5 * pressure_rate;
-            let powers = pressure_rates.map(|rate| step * mass * self.compliance * mean * rate);
+            let (powers, evolved) = match self.plan.by_law {
+                Some(_) => ([zero; 4], pressure),
+                None => {
+                    let power = |rate| step * mass * self.compliance * mean * rate;
+                    (pressure_rates.map(power), pressure + step * pressure_rate)
+                }
+            };
             let terms = self.plan.drift_terms(powers, [&velocity, &deviation], [step, mass]);
-            let evolved = pressure + step * pressure_rate;
-            let density_after = match self.follows {
-                true => fluid::density(evolved, at_rest, wave_speed),
-                false => density,
+            let density_after = match (self.follows, self.plan.by_law) {
+                (true, None) => fluid::density(evolved, at_rest, wave_speed),
+                (true, Some(_)) => density + step * pressure_rate / stiffness,
+                (false, _) => density,
             };
             let next = self.plan.moved(&position, &(velocity + deviation), step);
             let still = self.plan.carried(&position, step, &mut x);
@@ -293,34 +365,51 @@ impl<const D: usize> FluidPlan<D> {
     /// Accelerations between particles, and what shifting needs.
     fn forces(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let constants = self.force_constants;
-        let columns = [own("side", side_width(D))];
-        let of_walls = [own("side", side_width(D)), own("shear", D)];
+        let gradients = self.of_gradients();
+        let columns = [&[own("side", side_width(D))], gradients.as_slice()].concat();
+        let of_walls = self.of_walls();
         let gather =
             Gather::<ForceSum<D>, _>::new(dialect, "forces", space, Among::Active, Order::Lanes);
-        macro_rules! of {
-            ($kind:expr, $artificial:literal, $crowding:literal) => {{
-                let law = Forces::<D, { $kind }, $artificial, $crowding>(constants);
+        macro_rules! with {
+            ($law:expr, $walls:ident) => {{
+                let law = $law;
                 let gather = gather.term(&law, &columns, Among::Active);
                 match self.plan.normals {
                     0 => gather,
-                    _ => gather.term(&WallForces(law), &of_walls, Among::Passive),
+                    _ => gather.term(&$walls(law), &of_walls, Among::Passive),
                 }
             }};
         }
+        macro_rules! of {
+            ($kind:expr, $artificial:literal, $crowding:literal) => {{
+                let plain = Forces::<D, { $kind }, $artificial, $crowding>(constants);
+                with!(plain, WallForces)
+            }};
+        }
+        macro_rules! corrected {
+            ($diffusivity:expr, $artificial:literal, $crowding:literal) => {{
+                let plain = Forces::<D, FULL, $artificial, $crowding>(constants);
+                with!(CorrectedForces(plain, $diffusivity), CorrectedWallForces)
+            }};
+        }
         let (corrects, artificial, crowding) = self.force_kind;
-        let gather = match (corrects, artificial, crowding) {
-            (NONE, false, false) => of!(NONE, false, false),
-            (NONE, false, true) => of!(NONE, false, true),
-            (NONE, true, false) => of!(NONE, true, false),
-            (NONE, true, true) => of!(NONE, true, true),
-            (FULL, false, false) => of!(FULL, false, false),
-            (FULL, false, true) => of!(FULL, false, true),
-            (FULL, true, false) => of!(FULL, true, false),
-            (FULL, true, true) => of!(FULL, true, true),
-            (_, false, false) => of!(STRESS, false, false),
-            (_, false, true) => of!(STRESS, false, true),
-            (_, true, false) => of!(STRESS, true, false),
-            (_, true, true) => of!(STRESS, true, true),
+        let gather = match (self.corrected, corrects, artificial, crowding) {
+            (Some(nu), _, false, false) => corrected!(nu, false, false),
+            (Some(nu), _, false, true) => corrected!(nu, false, true),
+            (Some(nu), _, true, false) => corrected!(nu, true, false),
+            (Some(nu), _, true, true) => corrected!(nu, true, true),
+            (None, NONE, false, false) => of!(NONE, false, false),
+            (None, NONE, false, true) => of!(NONE, false, true),
+            (None, NONE, true, false) => of!(NONE, true, false),
+            (None, NONE, true, true) => of!(NONE, true, true),
+            (None, FULL, false, false) => of!(FULL, false, false),
+            (None, FULL, false, true) => of!(FULL, false, true),
+            (None, FULL, true, false) => of!(FULL, true, false),
+            (None, FULL, true, true) => of!(FULL, true, true),
+            (None, _, false, false) => of!(STRESS, false, false),
+            (None, _, false, true) => of!(STRESS, false, true),
+            (None, _, true, false) => of!(STRESS, true, false),
+            (None, _, true, true) => of!(STRESS, true, true),
         };
         let gravity = self.plan.falls.then_some(through("numbers", "gravity", D));
         let filling = self.relaxation.map(|_| own("filling", 1));
@@ -345,7 +434,8 @@ impl<const D: usize> FluidPlan<D> {
         })
     }
 
-    /// By how much summation densities are above densities, where no free surface is within the support.
+    /// By how much summation densities are above densities, where no free surface is within the support; with corrected
+    /// gradients near them, too, but not below.
     fn excess(&self, dialect: Dialect, scale: f64) -> Pass {
         let reads = [
             own("wall", 1),
@@ -361,7 +451,12 @@ impl<const D: usize> FluidPlan<D> {
             let summed = me.mass() * centre + filling;
             let (excess, zero) = (summed * scale - me.density, Traced::from(0.0));
             let is_within = Traced::from(self.plan.smoothing_length).at_most(reach);
-            vec![if_fluid(wall, Traced::select(is_within, excess, zero), zero)]
+            // As theory (113) has it.
+            let near = match self.corrected {
+                Some(_) => Traced::select(excess.above(0.0), excess, zero),
+                None => zero,
+            };
+            vec![if_fluid(wall, Traced::select(is_within, excess, near), zero)]
         })
     }
 
@@ -376,30 +471,34 @@ impl<const D: usize> FluidPlan<D> {
             Order::Single,
         )
         .term(&Extrapolation::<D>, &sides, Among::Active);
-        let writes = [own("side", side_width(D)), own("shear", D)];
-        gather.close(&[], &plan.of_ghosts(), &writes, |around, mut x| {
+        gather.close(&[], &plan.of_ghosts(), &self.of_walls(), |around, mut x| {
             let ghost = plan.ghost(around, &mut x);
             let shear = pick(ghost.slips, &ghost.of_fluid.velocity, &ghost.of_fluid.dragged);
             let shear = pick(ghost.is_wet, &shear, &ghost.surface);
             let velocities = [ghost.of_fluid.velocity, ghost.of_fluid.deviation];
             let side = plan.ghost_side(&ghost, velocities, &mut x);
-            side.into_iter().chain(shear.iter().copied()).collect()
+            // Gradients of walls are not corrected.
+            let unit = self.corrected.map(|_| record::<GradientSide<D>>(&Gradients::none()));
+            let unit = unit.unwrap_or_default();
+            side.into_iter().chain(shear.iter().copied()).chain(unit).collect()
         })
     }
 
     /// What the fluid does to wall particles.
     fn reactions(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let constants = self.force_constants;
-        let law = Wall::<D>::of(&constants);
-        let columns = [own("side", side_width(D)), own("shear", D)];
-        let writes = [own("force", FORCES * D)];
-        Gather::<Components<D>, _>::new(dialect, "reactions", space, Among::Passive, Order::Lanes)
-            .term(&law, &columns, Among::Active)
-            .close(&[], &[], &writes, |walls, _| {
-                let mut all = vec![Traced::from(0.0); FORCES * D];
-                all[4 * D..5 * D].copy_from_slice(walls.as_slice());
-                all
-            })
+        let (law, columns) = (Wall::<D>::of(&constants), self.of_walls());
+        let (among, order) = (Among::Passive, Order::Lanes);
+        let gather = Gather::<Components<D>, _>::new(dialect, "reactions", space, among, order);
+        let gather = match self.corrected {
+            None => gather.term(&law, &columns, Among::Active),
+            Some(_) => gather.term(&CorrectedWall(law), &columns, Among::Active),
+        };
+        gather.close(&[], &[], &[own("force", FORCES * D)], |walls, _| {
+            let mut all = vec![Traced::from(0.0); FORCES * D];
+            all[4 * D..5 * D].copy_from_slice(walls.as_slice());
+            all
+        })
     }
 
     /// Squares of speed and acceleration, less the volume ratio, and whether something is not finite.
@@ -436,4 +535,9 @@ impl<const D: usize> FluidPlan<D> {
             ]
         })
     }
+}
+
+/// The numbers of rates.
+fn rates<const D: usize>(rates: &RateSums<Traced, D>) -> Vec<Traced> {
+    vec![rates.divergence, rates.pressure_transport, rates.pressure_diffusion]
 }

@@ -23,7 +23,7 @@ pub(super) use self::solids::SolidPlan;
 pub(super) use self::stages::stages;
 
 use self::moving::Moving;
-use self::passes::{Plan, drift_terms, kick_terms};
+use self::passes::{Plan, drift_terms};
 use self::removal::Removal;
 use super::ledger::{DRIFTING, Drift, Kick};
 use super::shifting::Speed;
@@ -216,7 +216,9 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
                 }
                 Ok(())
             }
-            Pass::Forces => {
+            Pass::Push => self.launch(pass, &[("step", step)]),
+            // Fluids with corrected gradients have forces of their own. Body forces are set once an instant.
+            Pass::Forces | Pass::Own(_) => {
                 self.fall(time)?;
                 self.launch(pass, &[])
             }
@@ -226,7 +228,8 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
             }
             Pass::Store => {
                 self.launch(pass, &[])?;
-                let sums = self.machine.sums(kick_terms::<D, P::Kind>(), self.count)?;
+                let stored = self.matter.plan().stored_terms::<P::Kind>();
+                let sums = self.machine.sums(stored, self.count)?;
                 let (mut kick, mut sums) = (Kick::ZERO, sums.into_iter());
                 let components = momentum_components(D).len();
                 for (total, entry) in kick.iter_mut().zip(P::Kind::ACCELERATING) {
@@ -239,6 +242,12 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
                 }
                 for (entry, sum) in P::Kind::ACCELERATING.iter().zip(&kick) {
                     entry.iter().for_each(|entry| totals.drive(*entry, sum));
+                }
+                // A pressure that follows from the density changes at once.
+                if let (Some(before), Some(after)) = (sums.next(), sums.next()) {
+                    let [pressure, ..] = P::Kind::DRIFTING;
+                    let gained = Total::of(after - before);
+                    pressure.iter().for_each(|entry| totals.book(*entry, &gained));
                 }
                 Ok(())
             }

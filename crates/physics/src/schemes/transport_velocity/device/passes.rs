@@ -1,14 +1,18 @@
 //! The passes that all kinds of matter share, as text.
 
 use piola_device::{
-    Dialect, Pass, Precision, Space, Traced, Use, difference, local, own, spread, through,
+    Among, Dialect, Gather, Order, Pass, Precision, Space, Traced, Use, difference, local, own,
+    spread, through,
 };
 use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::fluid::Side;
+use piola_formulas::pairs::sums::Background;
+use piola_formulas::pairs::{Components, PairLaw};
 use piola_formulas::{Number, fluid};
 
 use super::super::escape::Room;
 use super::super::ledger::DRIFTING;
+use super::super::shifting::SHARE;
 use super::super::{AtRest, Continuum};
 use super::walls::{forces, total};
 use crate::schemes::device::{Recorded as Vector, one, square, take};
@@ -26,8 +30,13 @@ pub(in super::super) struct Plan<const D: usize> {
     pub at_rest: Option<AtRest>,
     /// Whether densities are sums over masses.
     pub sums_densities: bool,
-    /// Whether SPST sets deviations, except of some particles.
+    /// What the pressures of a fluid follow from with its densities, where they do.
+    pub by_law: Option<AtRest>,
+    /// The largest background pressure over `rho_0 c^2`, if such pressures set deviations.
+    pub background: Option<f64>,
+    /// Whether SPST sets deviations.
     pub shifts: bool,
+    /// Whether some particles have no deviations.
     pub spares: bool,
     /// `1 / W(dx)` in m^D.
     pub crowding: f64,
@@ -69,7 +78,7 @@ pub(super) fn drift_terms(dimension: usize) -> usize {
 }
 
 /// The sums of accelerations: power and growth of each mechanism, and its force if that enters.
-pub(super) fn kick_terms<const D: usize, M: Continuum<D>>() -> usize {
+fn kick_terms<const D: usize, M: Continuum<D>>() -> usize {
     let components = momentum_components(D).len();
     let enters = |entry: &Option<Entry>| entry.is_some_and(|entry| entry.way.is_some());
     M::ACCELERATING.iter().map(|entry| 2 + if enters(entry) { components } else { 0 }).sum()
@@ -125,6 +134,10 @@ impl<const D: usize> Plan<D> {
             all.extend([self.drive(dialect), self.impose(dialect)]);
         }
         all.extend(self.surface_passes(dialect, space));
+        if let Some(most) = self.background {
+            all.extend([self.push(dialect, space, most), self.push_sides(dialect)]);
+            all.push(self.push_on(dialect));
+        }
         all
     }
 
@@ -185,12 +198,15 @@ impl<const D: usize> Plan<D> {
         ];
         let reads = [&reads, &*self.copied].concat();
         let is_single = dialect.of_pairs() == Precision::Single;
-        let counts = is_single.then(|| space.counts(&[]).0);
+        let counts = is_single.then(|| space.counts());
         let writes = [own("place", D), own("side", side_width(D)), spread("terms", 1)];
         let writes = [&writes, counts.as_slice(), &*self.copies].concat();
         local(dialect, "load", &[], &reads, &writes, |mut x| {
             let position: Vector<D> = take(&mut x);
-            let counts = if is_single { space.counts(position.as_slice()).1 } else { Vec::new() };
+            let counts = match is_single {
+                true => space.counted(position.as_slice()),
+                false => Vec::new(),
+            };
             let (velocity, deviation) = (take(&mut x), take(&mut x));
             let (density, pressure) = (one(&mut x), one(&mut x));
             let (amount, wall) = (one(&mut x), one(&mut x));
@@ -287,6 +303,60 @@ impl<const D: usize> Plan<D> {
         })
     }
 
+    /// Deviations by background pressures, as [`Common::push_apart`](super::super::Common::push_apart).
+    fn push(&self, dialect: Dialect, space: &Space<D>, most: f64) -> Pass {
+        let columns = [&[own("side", side_width(D))], &*self.of_continua()].concat();
+        let spared = self.spares.then_some(through("numbers", "unshifted", 1));
+        let rest = self.of_rest().into_iter();
+        let read: Vec<Use> = [columns[0]].into_iter().chain(rest).chain(spared).collect();
+        let law = Background::<D>::of(self.kernel, self.smoothing_length);
+        let (among, order) = (Among::Active, Order::Single);
+        Gather::<Components<D>, _>::new(dialect, "push", space, among, order)
+            .fold(&columns, &columns, Among::All, |meeting, sum| {
+                let (mut me, mut other) = (meeting.me, meeting.other);
+                let sides = [&mut me, &mut other].map(side::<D>);
+                let own = self.owned(space, &mut me, &mut other);
+                let [me, other] = sides.map(|side| (side, own));
+                law.add(&me, &other, &meeting.pair, sum);
+            })
+            .close(&["step"], &read, &[own("push", D)], |sum, mut x| {
+                let step = one(&mut x);
+                let me: Side<Traced, D> = side(&mut x);
+                let [density, wave_speed] = self.rest(&mut x);
+                let zero = Traced::from(0.0);
+                let spared = if self.spares { one(&mut x) } else { zero };
+                let size = Traced::select(me.pressure.below(0.0), -me.pressure, me.pressure);
+                let bound = Traced::from(most) * (density * (wave_speed * wave_speed));
+                let own = Traced::from(SHARE) * size;
+                let background = Traced::select(own.less(bound), own, bound);
+                let scale = -background / (me.density * me.density);
+                let is_pushed = size.above(0.0) & spared.below(0.5);
+                let pushed = |part: &Traced| *part * scale * (step * 0.5);
+                sum.iter().map(|part| Traced::select(is_pushed, pushed(part), zero)).collect()
+            })
+    }
+
+    /// These deviations go into the sides.
+    fn push_sides(&self, dialect: Dialect) -> Pass {
+        let reads = [through("numbers", "wall", 1), own("side", side_width(D)), own("push", D)];
+        let writes = [own("side", side_width(D))];
+        local(dialect, "push_sides", &[], &reads, &writes, |mut x| {
+            let wall = one(&mut x);
+            let mut me: Side<Traced, D> = side(&mut x);
+            me.deviation = take::<D>(&mut x).map(|part| if_fluid(wall, part, Traced::from(0.0)));
+            flat(&me)
+        })
+    }
+
+    /// And into the state.
+    fn push_on(&self, dialect: Dialect) -> Pass {
+        let reads = [own("wall", 1), through("slots", "push", D)];
+        local(dialect, "push_on", &[], &reads, &[own("deviation", D)], |mut x| {
+            let wall = one(&mut x);
+            x.iter().map(|part| if_fluid(wall, *part, Traced::from(0.0))).collect()
+        })
+    }
+
     /// The shift of a particle that may be at a free surface.
     fn at_surface(&self, crowding: Vector<D>, mut x: &[Traced]) -> Vector<D> {
         let (reach, surface) = (one(&mut x), one(&mut x));
@@ -302,6 +372,11 @@ impl<const D: usize> Plan<D> {
             let shift = Traced::select(is_close, shift[axis], crowding[axis]);
             Traced::select(is_still, Traced::from(0.0), shift)
         })
+    }
+
+    /// Sums of accelerations, and energies of compression before and after pressures that follow from densities change.
+    pub(super) fn stored_terms<M: Continuum<D>>(&self) -> usize {
+        kick_terms::<D, M>() + if self.by_law.is_some() { 2 } else { 0 }
     }
 
     /// What the passes have found goes into the state, with the powers of all accelerations.
@@ -322,7 +397,7 @@ impl<const D: usize> Plan<D> {
             own("pressure", 1),
             own("kick", D),
             own("deviation", D),
-            spread("terms", kick_terms::<D, M>()),
+            spread("terms", self.stored_terms::<M>()),
         ];
         local(dialect, "store", &[], &reads, &writes, |mut x| {
             let (position, velocity): (Vector<D>, Vector<D>) = (take(&mut x), take(&mut x));
@@ -350,7 +425,18 @@ impl<const D: usize> Plan<D> {
                 true => me.density,
                 false => if_fluid(wall, density, me.density),
             };
-            [density, if_fluid(wall, pressure, me.pressure)]
+            let pressure = match self.by_law {
+                None => if_fluid(wall, pressure, me.pressure),
+                // Not that of the side, which may be in single precision.
+                Some(rest) => {
+                    let now = fluid::pressure(density, rest.density, rest.wave_speed);
+                    let now = if_fluid(wall, now, me.pressure);
+                    let energy = |p: Traced| mass * 0.5 * rest.compliance() * p * p;
+                    terms.extend([energy(pressure), energy(now)]);
+                    now
+                }
+            };
+            [density, pressure]
                 .into_iter()
                 .chain(total.iter().copied())
                 .chain((0..D).map(kept))

@@ -16,6 +16,7 @@ impl<const D: usize> Plan<D> {
         match stage {
             Pass::Remove if self.removes => &["escape", "tell_escaped"],
             Pass::Load => &["load"],
+            Pass::Push => &["push", "push_sides", "push_on"],
             Pass::State => &["state"],
             // What moves walls is started where it changes, and what imposes it after the drift.
             Pass::Walls if self.moves => &["drive", "walls"],

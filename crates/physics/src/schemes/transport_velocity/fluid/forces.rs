@@ -72,6 +72,17 @@ impl<const D: usize> WeaklyCompressible<D> {
         (constants, (kind, constants.artificial > 0.0, crowding.is_some()))
     }
 
+    /// nu_v of theory (111) in m^2/s, where gradients are corrected.
+    pub(in super::super) fn velocity_diffusivity(&self, common: &Common<D>) -> Option<f64> {
+        let (h, c) = (common.support.smoothing_length(), self.fluid.wave_speed);
+        match common.settings.gradients {
+            Gradients::Plain => None,
+            Gradients::Corrected { velocity_diffusion } => {
+                Some(fluid::pressure_diffusivity(velocity_diffusion, h, c))
+            }
+        }
+    }
+
     fn gather_forces<const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(
         &self,
         common: &Common<D>,
@@ -93,13 +104,8 @@ impl<const D: usize> WeaklyCompressible<D> {
         constants: ForceConstants,
         forces: &mut [Forces<D>],
     ) {
-        let factor = match common.settings.gradients {
-            Gradients::Plain => 0.0,
-            Gradients::Corrected { velocity_diffusion } => velocity_diffusion,
-        };
-        let (h, c) = (common.support.smoothing_length(), self.fluid.wave_speed);
         let plain = Law::<D, FULL, ARTIFICIAL, CROWDING>(constants);
-        let law = CorrectedForces(plain, fluid::pressure_diffusivity(factor, h, c));
+        let law = CorrectedForces(plain, self.velocity_diffusivity(common).unwrap_or(0.0));
         let (sides, gradients) = (common.sides.as_slice(), self.gradients.as_slice());
         let fluid = Term { law, source: (sides, gradients), among: Among::Active };
         let source = ((sides, self.shear.as_slice()), gradients);

@@ -176,7 +176,8 @@ impl<const D: usize> WeaklyCompressible<D> {
 
     /// `1 / (rho0 c)^2`.
     pub(super) fn compliance(&self) -> f64 {
-        (self.fluid.density * self.fluid.wave_speed).powi(-2)
+        let Fluid { density, wave_speed, .. } = self.fluid;
+        AtRest { density, wave_speed }.compliance()
     }
 }
 

@@ -6,11 +6,8 @@ use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::transport_velocity::{AtRest, Common, Shifting};
 use crate::{Vector, parallel};
 
-/// Smoothing length of the push in units of that of the forces: it sees the nearest neighbours alone.
-const NARROW: f64 = 0.5;
-
 /// Background pressure in units of the size of a particle's own.
-const SHARE: f64 = 10.0;
+pub(in super::super) const SHARE: f64 = 10.0;
 
 impl<const D: usize> Common<D> {
     /// Puts the deviations of GTVF into the sides, which have been loaded, and into the `state` that they
@@ -47,8 +44,7 @@ impl<const D: usize> Common<D> {
         if list.is_passive(place) || me.pressure == 0.0 || self.is_unshifted(number) {
             return Vector::zeros();
         }
-        let smoothing_length = NARROW * support.smoothing_length();
-        let law = Background::<D> { kernel: support.kernel(), smoothing_length };
+        let law = Background::<D>::of(support.kernel(), support.smoothing_length());
         let source = (self.sides.as_slice(), &self.continua);
         let (mut sum, block) = (Vector::zeros(), &mut NeighborBlock::default());
         add_at(support, &Term { law, source, among: Among::All }, place, block, &mut sum);

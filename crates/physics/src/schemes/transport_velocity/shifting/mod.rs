@@ -5,5 +5,6 @@ mod background;
 mod iterative;
 mod sun;
 
+pub(super) use background::SHARE;
 pub(super) use iterative::Iteration;
 pub(super) use sun::Speed;
