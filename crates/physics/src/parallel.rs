@@ -84,7 +84,7 @@ impl<T: Send> Parts for PerChunk<'_, T> {
 
 /// Calls `body(first, parts)` for chunks of the arrays of `count` particles.
 pub fn for_each_part<P: Parts>(count: usize, parts: P, body: impl Fn(usize, P) + Sync) {
-    hand_out(count, [CHUNK; 2], parts, body);
+    hand_out(count, [CHUNK; 2], parts, &body);
 }
 
 /// Hands out arrays of `count` entries in pieces of `grain`, the last of which may be shorter, to all threads, or to as
@@ -92,11 +92,13 @@ pub fn for_each_part<P: Parts>(count: usize, parts: P, body: impl Fn(usize, P) +
 ///
 /// A thread that has nothing to do takes a part of what is left, long at first and short in the end, so that
 /// all of them end together and rarely wait for one another.
+///
+/// Bodies are called through a pointer, so that this is compiled once for arrays of a kind and not for every loop, but for those over spans.
 fn hand_out<P: Parts>(
     count: usize,
     [grain, work]: [usize; 2],
     parts: P,
-    body: impl Fn(usize, P) + Sync,
+    body: &(dyn Fn(usize, P) + Sync),
 ) {
     let shares = 4 * rayon::current_num_threads();
     let rest = Mutex::new((0, Some(parts)));
@@ -114,7 +116,6 @@ fn hand_out<P: Parts>(
     on_threads(count.div_ceil(work), &|| {
         while let Some((mut first, length, parts)) = take() {
             let (end, mut rest) = (first + length, Some(parts));
-            // One call: what is inlined into it is the body of every loop of a step.
             while let Some(parts) = rest.take() {
                 let own = if end - first > grain {
                     let (own, later) = parts.split(grain);
@@ -143,7 +144,7 @@ fn on_threads(pieces: usize, work: &(dyn Fn() + Sync)) {
 
 /// Calls `body(number, item)` for each item, of which each is worth a thread's while.
 pub fn for_each_item<T: Send>(items: &mut [T], body: impl Fn(usize, &mut T) + Sync) {
-    hand_out(items.len(), [1; 2], items, |first, items: &mut [T]| {
+    hand_out(items.len(), [1; 2], items, &|first, items: &mut [T]| {
         items.iter_mut().enumerate().for_each(|(k, item)| body(first + k, item));
     });
 }
@@ -179,13 +180,13 @@ pub fn add_sums<T: Sums>(
     add: impl Fn(usize, &mut T) + Sync,
     exact: &mut ExactSums,
 ) {
-    each_chunk(rows, |own, part| own.for_each(|i| add(i, part)), |part| exact.add(part));
+    each_chunk(rows, |own, part| own.for_each(|i| add(i, part)), &mut |part| exact.add(part));
 }
 
 /// Puts together what rows have over `0..count`, in their order: `add(rows, all)` adds that of some that follow each other.
 pub fn reduce<T: Reduce>(count: usize, add: impl Fn(Range<usize>, &mut T) + Sync) -> T {
     let mut all = T::ZERO;
-    each_chunk([count, CHUNK], add, |part| all.add(part));
+    each_chunk([count, CHUNK], add, &mut |part| all.add(part));
     all
 }
 
@@ -196,10 +197,10 @@ const SIDE_BY_SIDE: usize = 64;
 fn each_chunk<T: Reduce>(
     [count, chunk]: [usize; 2],
     add: impl Fn(Range<usize>, &mut T) + Sync,
-    see: impl FnMut(&T),
+    see: &mut dyn FnMut(&T),
 ) {
     let own = |first: usize| first..(first + chunk).min(count);
-    over_chunks([count, chunk], Counted, |first, Counted, part| add(own(first), part), see);
+    over_chunks([count, chunk], Counted, &|first, Counted, part| add(own(first), part), see);
 }
 
 /// Calls `body(first, parts, own)` for chunks of the arrays of `count` particles, which changes them and adds to what the
@@ -207,8 +208,8 @@ fn each_chunk<T: Reduce>(
 fn over_chunks<T: Reduce, P: Parts>(
     [count, chunk]: [usize; 2],
     parts: P,
-    body: impl Fn(usize, P, &mut T) + Sync,
-    mut see: impl FnMut(&T),
+    body: &(dyn Fn(usize, P, &mut T) + Sync),
+    see: &mut dyn FnMut(&T),
 ) {
     let mut kept = [T::ZERO; SIDE_BY_SIDE];
     let (mut first, mut rest) = (0, Some(parts));
@@ -217,12 +218,12 @@ fn over_chunks<T: Reduce, P: Parts>(
         let (block, later) = parts.split(length);
         let kept = &mut kept[..length.div_ceil(chunk)];
         let all = (block, PerChunk(kept, chunk));
-        hand_out(length, [chunk, CHUNK], all, |offset, (parts, PerChunk(part, _))| {
+        hand_out(length, [chunk, CHUNK], all, &|offset, (parts, PerChunk(part, _))| {
             let mut own = T::ZERO;
             body(first + offset, parts, &mut own);
             part.fill(own);
         });
-        kept.iter().for_each(&mut see);
+        kept.iter().for_each(&mut *see);
         first += length;
         rest = Some(later);
     }
@@ -270,7 +271,7 @@ pub fn add_sums_over_parts<T: Sums, P: Parts>(
     body: impl Fn(usize, P, &mut T) + Sync,
     exact: &mut ExactSums,
 ) {
-    over_chunks(rows, parts, body, |part| exact.add(part));
+    over_chunks(rows, parts, &body, &mut |part| exact.add(part));
 }
 
 /// Calls `body(first, rows, others)` for chunks of `rows` and of the `others` beside them, and
@@ -307,9 +308,14 @@ pub fn for_each_long_span<V: Send, T: Send>(
     body: impl Fn(&mut [V], &mut T) + Sync,
 ) {
     let (count, first) = (rows.len(), 0);
-    hand_out(count, [1; 2], Spans { first, values, rows, start }, |_, spans| {
-        spans.rows.iter_mut().for_each(|row| body(spans.values, row));
-    });
+    hand_out(
+        count,
+        [1; 2],
+        Spans { first, values, rows, start },
+        &|_, spans: Spans<'_, V, T, _>| {
+            spans.rows.iter_mut().for_each(|row| body(spans.values, row));
+        },
+    );
 }
 
 /// Rows from `first` on, and the values that belong to them.

@@ -51,6 +51,7 @@ pub struct FillReport<const D: usize> {
 /// # Errors
 /// An impossible specification, too many sites, a shape without particles, concentric layers in one that is not round, and a turned one that reaches across
 /// a periodic axis which is turned.
+#[inline(never)]
 pub fn fill<const D: usize>(
     shape: &Shape<D>,
     spec: &LatticeSpec<D>,

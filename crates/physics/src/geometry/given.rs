@@ -132,6 +132,7 @@ impl PointCloud {
 
     /// Its particles, if it is of `D` dimensions: the volume of a point is both quadrature volume and kernel weight,
     /// and its spacing the edge of a cube of this volume.
+    #[inline(never)]
     pub fn particles<const D: usize>(&self) -> Option<Particles<D>> {
         let mut particles = Particles::default();
         for (point, &volume) in self.positions.chunks_exact(self.dimension).zip(&self.volumes) {

@@ -121,6 +121,7 @@ impl From<FileFault> for PointsFault {
 ///
 /// # Errors
 /// [`GeometryError::Points`] with the first fault of the file.
+#[inline(never)]
 pub fn from_points<const D: usize>(path: &Path) -> Result<Particles<D>, GeometryError> {
     let refuse = |fault| PointsError { file: path.into(), line: None, column: None, fault };
     let bytes = read(path).map_err(|fault| refuse(fault.into()))?;

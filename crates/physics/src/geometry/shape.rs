@@ -325,6 +325,7 @@ impl<const D: usize> Shape<D> {
 
     /// The volume in m^D, where it is known: for boxes, balls, annuli, cylinders, polygons and closed surfaces, for these turned, and for these
     /// with others cut out of a box wholly inside of it and apart from each other.
+    #[inline(never)]
     pub fn exact_volume(&self) -> Option<f64> {
         match &self.0 {
             Kind::Box { min, max } => Some((max - min).product()),

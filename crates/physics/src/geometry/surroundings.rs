@@ -13,6 +13,7 @@ use crate::parallel::for_each_chunk;
 ///
 /// # Errors
 /// An impossible specification, too many sites, and concentric layers, which end at their face.
+#[inline(never)]
 pub fn surroundings<const D: usize>(
     shape: &Shape<D>,
     spec: &LatticeSpec<D>,

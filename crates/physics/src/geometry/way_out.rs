@@ -51,6 +51,7 @@ impl<const D: usize> Shape<D> {
     /// first layer is behind. None where every way leads beyond the bounds. In surfaces of facets `layer` has no meaning.
     ///
     /// Directions are searched from those to the faces, edges and corners of a cube.
+    #[inline(never)]
     pub fn ways_out(
         &self,
         point: &Vector<D>,
@@ -199,6 +200,7 @@ impl<const D: usize> Shape<D> {
     /// nearest is less than `reach` m away, for a `layer` in m: those that [`Self::ways_out`] finds but the opposite, and that one.
     /// The first of each are the two of the thin part. `None` in thick parts and within `reach` of a free end, round
     /// which what is on both sides is one.
+    #[inline(never)]
     pub fn sides(
         &self,
         point: &Vector<D>,

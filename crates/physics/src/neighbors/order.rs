@@ -20,6 +20,7 @@ const BITS: u32 = 21;
 /// # Errors
 /// Non-finite points, too many of them, and an unusable `cell` (named as the support of particle
 /// 0).
+#[inline(never)]
 pub fn spatial_order<const D: usize>(
     points: &[Vector<D>],
     cell: f64,

@@ -49,6 +49,7 @@ impl<const D: usize> DirectedSupport<D> {
     ///
     /// # Errors
     /// As [`Self::new`].
+    #[inline(never)]
     pub fn of(cover: &Cover<'_, D>) -> Result<Self, NeighborError> {
         let Cover { particles, group, images, kernel, radius, domain } = *cover;
         let count = particles.len();
@@ -112,6 +113,7 @@ impl<const D: usize> DirectedSupport<D> {
 ///
 /// # Errors
 /// When the search refuses the positions.
+#[inline(never)]
 pub fn nearest_radii<const D: usize>(
     particles: &Particles<D>,
     group: &[u32],

@@ -42,6 +42,7 @@ impl<const D: usize> DualGradient<D> {
     ///
     /// # Errors
     /// As [`Self::plain`].
+    #[inline(never)]
     pub fn of(cover: &Cover<'_, D>, support: &DirectedSupport<D>) -> Result<Self, OperatorError> {
         let entries = support.list.pairs();
         let (mut coefficients, mut weights) =

@@ -23,6 +23,7 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// When a particle has no neighbour that is not on one line with it and the others, or the box repeats itself too soon.
+#[inline(never)]
 pub fn lattice_areas<const D: usize>(
     particles: &Particles<D>,
     edges: &[f64; D],
@@ -83,6 +84,7 @@ fn along_rows<const D: usize>(
 /// edges in m along the columns of a rotation around the `positions` of a lattice: what a load on the surface acts on. The areas of
 /// [`lattice_areas`] are there to be summed over all particles; where particles are centres of cells,
 /// those of the outermost layer alone are half as large again as its faces.
+#[inline(never)]
 pub fn exposed_areas<const D: usize>(
     positions: &[Vector<D>],
     edges: &[f64; D],

@@ -19,16 +19,18 @@ const MOST: f64 = 0.1;
 /// `X_a += - beta dx^2 sum_b w_b (grad_a W_ab - grad_a W_ab at the sites)`, by a tenth of the spacing
 /// dx at most, `steps` times. At the `sites` of the lattice that the particles come from nothing
 /// moves, near a boundary neither, where the sum would push outwards. The kernel is one of Wendland's,
-/// under which particles do not pair. A step to where a particle does not stay is left out. Volumes
+/// under which particles do not pair. A step to where a particle does not stay is left out: `stays` is asked
+/// once for each free particle and step, with where it would be in m. Volumes
 /// and weights stay. The same particles give the same places, whatever the threads.
 ///
 /// # Errors
 /// Those of [`search`].
+#[inline(never)]
 pub fn relax<const D: usize>(
     particles: &mut Particles<D>,
     sites: &[Vector<D>],
     free: &[bool],
-    stays: impl Fn(&Vector<D>) -> bool,
+    stays: &dyn Fn(&Vector<D>) -> bool,
     domain: &Domain<D>,
     steps: u64,
 ) -> Result<(), NeighborError> {

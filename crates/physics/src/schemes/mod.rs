@@ -28,6 +28,7 @@ pub mod transport_velocity;
 pub mod upwind;
 pub mod world;
 
+pub use compiled::boxed;
 #[doc(hidden)]
 pub use compiled::{Doors, compiled};
 pub use coupled::CoupledScheme;

@@ -28,7 +28,7 @@ fn particles_move_apart_and_the_boundary_stays() {
     let stays = |x: &Vector<2>| x.iter().all(|x| (0.0..=1.0).contains(x));
     let relaxed = |steps: u64| {
         let mut particles = start.clone();
-        relax(&mut particles, &sites, &free, stays, &Domain::open(), steps).unwrap();
+        relax(&mut particles, &sites, &free, &stays, &Domain::open(), steps).unwrap();
         particles
     };
     let end = relaxed(40);
@@ -47,6 +47,6 @@ fn a_lattice_stays_where_it_is() {
     let free: Vec<bool> =
         particles.position.iter().map(|x| x.iter().all(|x| *x > 0.01 && *x < 0.99)).collect();
     let sites = particles.position.clone();
-    relax(&mut particles, &sites, &free, |_| true, &Domain::open(), 5).unwrap();
+    relax(&mut particles, &sites, &free, &|_| true, &Domain::open(), 5).unwrap();
     assert_eq!(particles.position, sites);
 }

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use crate::support::{Choice, PLAIN, energy, lattice};
 use piola::Vector;
-use piola::schemes::Scheme;
 use piola::schemes::upwind::{Settings, Upwind};
+use piola::schemes::{Scheme, boxed};
 use piola::time::{Executor, IntegratorKind, Outcome, StepControl};
 use piola_formulas::volumetric::VolumetricLaw;
 use std::sync::atomic::AtomicBool;
@@ -130,7 +130,7 @@ fn what_cannot_move_a_scheme_is_not_built() {
             Ok(integrator) => {
                 assert!(able.contains(&kind.name()), "{kind:?} serves");
                 let control = StepControl::Cfl(0.3);
-                let mut executor = Executor::new(Box::new(scheme), integrator, control, 0.01);
+                let mut executor = Executor::new(boxed(scheme), integrator, control, 0.01);
                 let summary = executor.run(&AtomicBool::new(false), &mut |_| {});
                 assert_eq!(summary.expect("nobody looks").outcome, Outcome::Completed);
             }

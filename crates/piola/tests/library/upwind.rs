@@ -12,7 +12,7 @@ use crate::support::{
 };
 use piola::neighbors::Domain;
 use piola::schemes::upwind::{Initial, Settings, Upwind, UpwindInput};
-use piola::schemes::{Health, Ledger, Scheme};
+use piola::schemes::{Health, Ledger, Scheme, boxed};
 use piola::time::{Executor, IntegratorKind, Outcome, StepControl};
 use piola::{Tensor, Vector};
 use piola_formulas::volumetric::VolumetricLaw;
@@ -238,7 +238,7 @@ fn angular_momentum_is_kept(settings: Settings) {
 
 fn executor<S: Scheme + 'static>(mut scheme: S, control: StepControl, end: f64) -> Executor {
     let integrator = IntegratorKind::TvdRk2.build(&mut scheme).expect("it has rates");
-    Executor::new(Box::new(scheme), integrator, control, end)
+    Executor::new(boxed(scheme), integrator, control, end)
 }
 
 /// U1: a bar with one mode follows u(L, t) = sin(w t) / w, w = pi c / 2L.

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 use piola::Vector;
-use piola::schemes::{ImplicitRule, Theta};
+use piola::schemes::{ImplicitRule, Theta, boxed};
 use piola::time::{
     Executor, IntegratorKind, Moment, ObserveError, Observer, Outcome, Schedule, StepControl,
     Summary,
@@ -38,7 +38,7 @@ fn swing(rule: Theta, kind: IntegratorKind, error: f64) -> (Summary, Vec<f64>) {
         kind.build_with(rule, Some(error), &mut scheme).expect("it was built for that");
     let last = Last::default();
     let control = StepControl::AtMost(10.0);
-    let mut executor = Executor::new(Box::new(scheme), integrator, control, 4.0);
+    let mut executor = Executor::new(boxed(scheme), integrator, control, 4.0);
     executor.observe(Box::new(last.clone()));
     let summary =
         executor.run(&AtomicBool::new(false), &mut |_| {}).expect("nothing is written anywhere");

@@ -42,6 +42,7 @@ impl<const D: usize> BoundaryFace<D> {
     }
 
     /// Points for sums over the face: exact for polynomials of the fourth degree.
+    #[inline(never)]
     pub fn samples(&self) -> Vec<FaceSample<D>> {
         let mut samples = Vec::new();
         let is_of_nodes = self.is_of_nodes();

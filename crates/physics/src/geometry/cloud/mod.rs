@@ -65,6 +65,7 @@ pub struct CloudSpec {
 /// [`GeometryError::Mesh`] for files that are no mesh; for meshes of other dimensions, cells that are
 /// flat, inverted, folded or there twice; for sets and arrays that are not there, and volumes that do
 /// not make up the body. [`GeometryError::TooManyParticles`].
+#[inline(never)]
 pub fn from_mesh<const D: usize>(
     path: &Path,
     spec: &CloudSpec,

@@ -78,6 +78,7 @@ impl Packing {
 ///
 /// # Errors
 /// Those of [`fill`](crate::geometry::fill()) and of [`search`], and a shape that is far too thin for its extent.
+#[inline(never)]
 pub fn pack<const D: usize>(
     shape: &Shape<D>,
     spacing: f64,

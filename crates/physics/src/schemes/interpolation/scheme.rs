@@ -131,6 +131,7 @@ impl<const D: usize> Scheme for Interpolation<D> {
         Particle::of(&self.particles, index)
     }
 
+    #[inline(never)]
     fn neighborhood(&self, index: usize) -> Vec<u32> {
         let row = self.value.row(index).map(|(b, _)| b);
         row.filter(|&b| b as usize != index && (b as usize) < self.particles.len()).collect()

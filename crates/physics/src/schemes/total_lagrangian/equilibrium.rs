@@ -66,6 +66,7 @@ impl<const D: usize> StaticScheme for TotalLagrangian<D> {
         Ok(())
     }
 
+    #[inline(never)]
     fn sensitivity(
         &mut self,
         state: &[f64],

@@ -90,6 +90,7 @@ impl<const D: usize> NewmarkScheme for TotalLagrangian<D> {
         Ok(())
     }
 
+    #[inline(never)]
     fn kinetic_distance(&self, one: &[f64], other: &[f64]) -> f64 {
         let velocities = [one, other].map(|state| self.columns(state).velocity);
         kinetic_distance(velocities, |a| self.solid.mass[a])

@@ -220,6 +220,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     }
 
     /// Those in its support and those in whose support it is.
+    #[inline(never)]
     fn neighborhood(&self, index: usize) -> Vec<u32> {
         self.matrices.neighborhood(index)
     }
@@ -246,6 +247,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         Some(self)
     }
 
+    #[inline(never)]
     fn stability_advice(&self) -> &'static str {
         match (self.not_convex, &self.statics, self.matrices.edges()) {
             (Some(_), Some(_), _) => {
@@ -262,6 +264,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         }
     }
 
+    #[inline(never)]
     fn collapse_advice(&self, index: usize) -> String {
         let mixture = self.solid.mixture(index);
         let [least, _] = mixture.wave_moduli(&self.strained.gradient[index]);

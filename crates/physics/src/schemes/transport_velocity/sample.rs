@@ -30,6 +30,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
 
     /// The terms of the equations at a state, particle by particle, for those who want to see
     /// them apart.
+    #[inline(never)]
     pub fn terms(&mut self, time: f64, state: &[f64]) -> Vec<(Rates, Forces<D>)> {
         self.all_passes(time, state);
         let common = &self.common;

@@ -169,6 +169,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         self.common.mass_at(index, self.common.at_rest(index).density)
     }
 
+    #[inline(never)]
     fn particle(&self, index: usize) -> Particle {
         Particle {
             id: self.common.particles.id[index],
@@ -176,6 +177,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         }
     }
 
+    #[inline(never)]
     fn neighborhood(&self, index: usize) -> Vec<u32> {
         self.common.neighbors_of(index)
     }
@@ -184,6 +186,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         "raise `scheme.artificial_viscosity`"
     }
 
+    #[inline(never)]
     fn collapse_advice(&self, _index: usize) -> String {
         "the density has lost its meaning there: lower `time.cfl`, raise the wave speed of the \
          fluid to ten times the speeds that occur, or raise `scheme.artificial_viscosity`"
@@ -229,6 +232,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         Ok(Box::new(self.shared(part)?))
     }
 
+    #[inline(never)]
     fn cost(&self, particles: Range<usize>) -> f64 {
         let list = self.common.support.list();
         let places = &list.places()[particles];

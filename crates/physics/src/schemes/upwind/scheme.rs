@@ -177,6 +177,7 @@ impl<const D: usize> Scheme for Upwind<D> {
         Particle::of(&self.particles, index)
     }
 
+    #[inline(never)]
     fn neighborhood(&self, index: usize) -> Vec<u32> {
         self.support.list.row(index).to_vec()
     }
@@ -185,6 +186,7 @@ impl<const D: usize> Scheme for Upwind<D> {
         "raise `scheme.tau_velocity`"
     }
 
+    #[inline(never)]
     fn collapse_advice(&self, index: usize) -> String {
         let law = self.law(index).law;
         let name = law.name().trim_end_matches("_law");

@@ -247,11 +247,13 @@ impl<const D: usize> CoupledScheme for World<D> {
         (self.solids[number].scheme.as_mut(), self.parts.all[number + 1].state.clone())
     }
 
+    #[inline(never)]
     fn fluid_steps(&self, step: f64) -> u64 {
         let cfl = self.cfl.filter(|_| self.solids.iter().all(|solid| solid.cfl.is_some()));
         cfl.map_or(1, |cfl| steps_within(step, shortest(&self.limits, cfl), most_steps(cfl)))
     }
 
+    #[inline(never)]
     fn solid_steps(&self, number: usize, step: f64) -> u64 {
         let Solid { cfl, limits, .. } = &self.solids[number];
         cfl.map_or(1, |cfl| steps_within(step, shortest(limits, cfl), MOST_STEPS))
@@ -358,6 +360,7 @@ impl<const D: usize> CoupledScheme for World<D> {
         }
     }
 
+    #[inline(never)]
     fn forget(&mut self) {
         self.known.clear();
         self.fixed_at.clear();

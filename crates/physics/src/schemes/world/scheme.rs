@@ -102,6 +102,7 @@ impl<const D: usize> Scheme for World<D> {
     }
 
     /// One of a system, unless the field is of what others do to it.
+    #[inline(never)]
     fn stretch(&self, field: &FieldDescription, particles: &Range<usize>) -> Option<Range<usize>> {
         let (k, particles) = self.parts.run_of(particles)?;
         if k > 0 && BORNE.contains(&field.name) {
@@ -222,6 +223,7 @@ impl<const D: usize> Scheme for World<D> {
         }
     }
 
+    #[inline(never)]
     fn passed(&self, state: &[f64], body: u32) -> Option<Passage> {
         let part = &self.parts.all[0];
         self.system(0).passed(&state[part.state.clone()], body)
@@ -298,11 +300,13 @@ impl<const D: usize> Scheme for World<D> {
         (0..self.parts.all.len()).flat_map(|k| self.system(k).phases()).collect()
     }
 
+    #[inline(never)]
     fn parts(&self) -> Vec<(&dyn Scheme, Range<usize>)> {
         let all = self.parts.all.iter().enumerate();
         all.map(|(k, part)| (self.system(k), part.state.clone())).collect()
     }
 
+    #[inline(never)]
     fn missing(&self, state: &[f64]) -> u64 {
         let all = self.parts.all.iter().enumerate();
         all.map(|(k, part)| self.system(k).missing(&state[part.state.clone()])).sum()
@@ -320,11 +324,13 @@ impl<const D: usize> Scheme for World<D> {
         self.fluid.is_closed()
     }
 
+    #[inline(never)]
     fn birth_of(&self, state: &[f64], index: usize) -> u32 {
         let (k, own) = self.local(index);
         self.system(k).birth_of(&state[self.parts.all[k].state.clone()], own)
     }
 
+    #[inline(never)]
     fn body_of(&self, state: &[f64], index: usize) -> Option<u32> {
         let (k, own) = self.local(index);
         let part = &state[self.parts.all[k].state.clone()];
@@ -333,16 +339,19 @@ impl<const D: usize> Scheme for World<D> {
         Some(if is_own(body) { self.parts.bodies[index] } else { body })
     }
 
+    #[inline(never)]
     fn mass(&self, index: usize) -> f64 {
         let (k, own) = self.local(index);
         self.system(k).mass(own)
     }
 
+    #[inline(never)]
     fn particle(&self, index: usize) -> Particle {
         let (k, own) = self.local(index);
         Particle { id: self.parts.ids[index], ..self.system(k).particle(own) }
     }
 
+    #[inline(never)]
     fn neighborhood(&self, index: usize) -> Vec<u32> {
         let (k, own) = self.local(index);
         let near = self.system(k).neighborhood(own);
@@ -353,6 +362,7 @@ impl<const D: usize> Scheme for World<D> {
         self.fluid.stability_advice()
     }
 
+    #[inline(never)]
     fn collapse_advice(&self, index: usize) -> String {
         let (k, own) = self.local(index);
         self.system(k).collapse_advice(own)
@@ -390,6 +400,7 @@ impl<const D: usize> Scheme for World<D> {
         names.zip(counts).map(|(name, count)| (name, count[1] as u64)).collect()
     }
 
+    #[inline(never)]
     fn settable(&self, index: usize) -> &'static [&'static str] {
         let (k, own) = self.local(index);
         self.system(k).settable(own)

@@ -310,7 +310,7 @@ fn relaxed<const D: usize>(
     let free: Vec<bool> = sites.position.iter().zip(&sites.spacing).map(is_inside).collect();
     let steps = body.lattice.relax;
     let stays = |x: &Vector<D>| shape.contains(&domain.wrap(x));
-    relax(&mut made.particles, &sites.position, &free, stays, domain, steps).map_err(|error| {
+    relax(&mut made.particles, &sites.position, &free, &stays, domain, steps).map_err(|error| {
         let label = format!("lattice of body `{}`", body.name.value);
         case.problem_at(body.spacing.place, error.to_string(), label, None)
     })?;

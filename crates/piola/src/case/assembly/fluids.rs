@@ -19,7 +19,7 @@ use crate::schemes::transport_velocity::{
     Continuum, Fluid, Guard, Hypoelastic, Nesting, OpenBoundaries, Solid, SolidsInput,
     TransportVelocity, TransportVelocityError, TransportVelocityInput, Wall, WeaklyCompressible,
 };
-use crate::schemes::{Initial, Scheme};
+use crate::schemes::{Initial, Scheme, boxed};
 
 /// Builds the scheme `transport_velocity`.
 pub(super) fn build<const D: usize>(
@@ -44,10 +44,10 @@ pub(super) fn build<const D: usize>(
             held: prepared.held.clone(),
         };
         let (solids, built) = prepared.finish::<Hypoelastic<D>>(case, settings, solids)?;
-        return Ok((Box::new(solids), built));
+        return Ok((boxed(solids), built));
     }
     let (fluid, built) = prepared.finish::<WeaklyCompressible<D>>(case, settings, fluid(case)?)?;
-    Ok((Box::new(fluid), built))
+    Ok((boxed(fluid), built))
 }
 
 /// Builds a fluid of that scheme.

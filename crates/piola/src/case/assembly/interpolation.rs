@@ -7,10 +7,10 @@ use crate::case::model::{self, Case};
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::operators::POOR_CONDITION;
-use crate::schemes::Scheme;
 use crate::schemes::interpolation::{
     Boundary, Interpolation, InterpolationError, InterpolationInput,
 };
+use crate::schemes::{Scheme, boxed};
 
 /// Builds the scheme `interpolation`.
 pub(super) fn build<const D: usize>(
@@ -69,7 +69,7 @@ pub(super) fn build<const D: usize>(
     });
     let (neighbors, poorly_supported) = row_statistics(D, row_sizes(&scheme));
     Ok((
-        Box::new(scheme),
+        boxed(scheme),
         Built {
             poorly_supported,
             probes,

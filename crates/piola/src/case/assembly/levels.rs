@@ -11,10 +11,10 @@ use crate::case::source::Located;
 use crate::coordinates;
 use crate::geometry::{Particles, Shape};
 use crate::neighbors::Domain;
-use crate::schemes::Scheme;
 use crate::schemes::transport_velocity::{
     DensityRule, Levels, Nesting, Refined, Shifting, WeaklyCompressible,
 };
+use crate::schemes::{Scheme, boxed};
 
 /// How far beyond the support of the finer level, in spacings of the coarser one, particles of that are split, and how far
 /// the finer ones go, so that one that is split twice is further out than the last one that is needed.
@@ -108,7 +108,7 @@ pub(super) fn build<const D: usize>(
     let index = |a: u32| levels.index_of(0, a);
     let poorly_supported = built.poorly_supported.into_iter().filter_map(index).collect();
     match problems.is_empty() {
-        true => Ok((Box::new(levels), Built { probes, lines, poorly_supported, ..built })),
+        true => Ok((boxed(levels), Built { probes, lines, poorly_supported, ..built })),
         false => Err(problems),
     }
 }

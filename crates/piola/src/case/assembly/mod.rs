@@ -36,7 +36,7 @@ use crate::operators::{GradientOperator, Support};
 use crate::schemes::upwind::{
     ImplicitSettings, Material, Settings, Upwind, UpwindError, UpwindInput,
 };
-use crate::schemes::{InputError, Scheme};
+use crate::schemes::{InputError, Scheme, boxed};
 use crate::time::{CheckpointPolicy, Integrator, IntegratorKind, StepControl};
 
 use bodies::BodyReport;
@@ -175,7 +175,7 @@ fn row_statistics(
 }
 
 /// The number of neighbours of each particle of a scheme.
-fn row_sizes(scheme: &dyn Scheme) -> impl Iterator<Item = (u32, usize)> {
+fn row_sizes<S: Scheme>(scheme: &S) -> impl Iterator<Item = (u32, usize)> {
     (0..scheme.particle_count()).map(|a| (a as u32, scheme.neighborhood(a).len()))
 }
 
@@ -222,7 +222,7 @@ fn build_upwind<const D: usize>(
     let scheme = upwind(case, settings, (particles, &bodies), support, &mut problems);
     match scheme {
         Some(scheme) if problems.is_empty() => Ok((
-            Box::new(scheme),
+            boxed(scheme),
             Built {
                 probes,
                 lines,

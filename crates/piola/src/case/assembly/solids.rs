@@ -25,7 +25,7 @@ use crate::schemes::total_lagrangian::{
     Form, Gradients, Material, Motion, Part, Settings, StaticsError, StaticsInput, TotalLagrangian,
     TotalLagrangianError, TotalLagrangianInput, free_to_move,
 };
-use crate::schemes::{InputError, Scheme};
+use crate::schemes::{InputError, Scheme, boxed};
 use crate::solve::Newton;
 
 /// Builds a total Lagrangian solid.
@@ -150,7 +150,7 @@ pub(super) fn build<const D: usize>(
     let sizes = (0..scheme.particle_count()).map(|a| (a as u32, scheme.neighbors(a)));
     let (neighbors, poorly_supported) = row_statistics(D, sizes);
     Ok((
-        Box::new(scheme),
+        boxed(scheme),
         Built {
             probes,
             lines,

@@ -5,8 +5,8 @@ use super::overlap::REMEDY;
 use super::{Built, Parts, beyond_stable, domain, fluids, integrator, layers, probes, system};
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, Material, StepControl};
-use crate::schemes::Scheme;
 use crate::schemes::world::{InterfaceError, SolidInput, World, WorldError};
+use crate::schemes::{Scheme, boxed};
 use crate::time::{Coupled, Integrator};
 
 /// Builds a fluid with solids in it.
@@ -85,7 +85,7 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
         vec![case.problem_at(place, error.to_string(), "of this system", Some(help.to_owned()))]
     })?;
     let built = together(case, all, &world);
-    Ok((Box::new(world), Box::new(Coupled::new(integrators)), built))
+    Ok((boxed(world), Box::new(Coupled::new(integrators)), built))
 }
 
 /// The steps of a fluid, in which its forces change at once for all of the own steps that solids take in one of them.
@@ -108,7 +108,7 @@ const MOST_RELAXATION: f64 = 0.05;
 
 impl Beat {
     /// That of the fluid of a case; none without a fluid that has waves.
-    fn of(main: &Case, fluid: &mut dyn Scheme) -> Option<Self> {
+    fn of(main: &Case, fluid: &mut impl Scheme) -> Option<Self> {
         let bodies = || main.bodies.iter().filter(|body| body.system.is_none());
         let body =
             bodies().find(|body| matches!(*body.material, Material::WeaklyCompressible { .. }))?;

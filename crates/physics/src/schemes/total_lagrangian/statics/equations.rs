@@ -111,6 +111,7 @@ impl<const D: usize> Equations for Statics<D> {
         self.solver.reduction().unknowns()
     }
 
+    #[inline(never)]
     fn trial(&mut self, factor: f64, x: &[f64]) -> Trial {
         self.displace(factor, x);
         self.dead_loads(factor);
@@ -144,6 +145,7 @@ impl<const D: usize> Equations for Statics<D> {
         }
     }
 
+    #[inline(never)]
     fn residual(&mut self, factor: f64, x: &[f64], residual: &mut [f64]) -> f64 {
         let loads = self.balance(factor, x);
         let reduction = self.solver.reduction();
@@ -154,11 +156,13 @@ impl<const D: usize> Equations for Statics<D> {
         if open == 0.0 { 0.0 } else { (open / (loads + held)).sqrt() }
     }
 
+    #[inline(never)]
     fn settle(&mut self, factor: f64, x: &[f64]) -> bool {
         self.displace(factor, x);
         self.faces.settle(&self.displacement, factor)
     }
 
+    #[inline(never)]
     fn linearise(&mut self, factor: f64, x: &[f64], definite: bool) -> Result<(), LinearError> {
         self.displace(factor, x);
         let pressing = self.loads.pressing(self.discrete.len(), factor, false);

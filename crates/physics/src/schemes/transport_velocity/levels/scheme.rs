@@ -98,6 +98,7 @@ impl<const D: usize> Scheme for Levels<D> {
         all
     }
 
+    #[inline(never)]
     fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
         let (k, own) = self.parts.local(index);
         self.levels[k].escape(own, &state[self.parts.all[k].state.clone()])
@@ -118,6 +119,7 @@ impl<const D: usize> Scheme for Levels<D> {
         figures.extend([mass, present]);
     }
 
+    #[inline(never)]
     fn passed(&self, state: &[f64], body: u32) -> Option<Passage> {
         // The coarsest level alone has open boundaries.
         self.each(state).find_map(|(level, part)| level.passed(part, body))
@@ -179,6 +181,7 @@ impl<const D: usize> Scheme for Levels<D> {
         self.levels.iter().flat_map(|level| level.phases()).collect()
     }
 
+    #[inline(never)]
     fn parts(&self) -> Vec<(&dyn Scheme, Range<usize>)> {
         let levels = self.levels.iter().map(|level| level as &dyn Scheme);
         levels.zip(self.parts.all.iter().map(|part| part.state.clone())).collect()
@@ -200,12 +203,14 @@ impl<const D: usize> Scheme for Levels<D> {
         false
     }
 
+    #[inline(never)]
     fn body_of(&self, state: &[f64], index: usize) -> Option<u32> {
         let (k, own) = self.parts.local(index);
         self.levels[k].body_of(&state[self.parts.all[k].state.clone()], own)
     }
 
     /// Those of all levels take turns, so that no two are the same.
+    #[inline(never)]
     fn birth_of(&self, state: &[f64], index: usize) -> u32 {
         let (k, own) = self.parts.local(index);
         let birth = self.levels[k].birth_of(&state[self.parts.all[k].state.clone()], own);
@@ -214,6 +219,7 @@ impl<const D: usize> Scheme for Levels<D> {
         before.map_or(0, |before| before.saturating_add(k as u32 + 1))
     }
 
+    #[inline(never)]
     fn mass(&self, index: usize) -> f64 {
         let (k, own) = self.parts.local(index);
         self.levels[k].mass(own)
@@ -223,11 +229,13 @@ impl<const D: usize> Scheme for Levels<D> {
         0.5_f64.powi(self.parts.local(index).0 as i32)
     }
 
+    #[inline(never)]
     fn particle(&self, index: usize) -> Particle {
         let (k, own) = self.parts.local(index);
         Particle { id: self.parts.ids[index], ..self.levels[k].particle(own) }
     }
 
+    #[inline(never)]
     fn neighborhood(&self, index: usize) -> Vec<u32> {
         let (k, own) = self.parts.local(index);
         let near = self.levels[k].neighborhood(own);
@@ -238,6 +246,7 @@ impl<const D: usize> Scheme for Levels<D> {
         self.levels[0].stability_advice()
     }
 
+    #[inline(never)]
     fn collapse_advice(&self, index: usize) -> String {
         let (k, own) = self.parts.local(index);
         self.levels[k].collapse_advice(own)

@@ -257,6 +257,7 @@ impl<const D: usize> Equations for StepEquations<'_, D> {
         self.parts.start.len()
     }
 
+    #[inline(never)]
     fn trial(&mut self, _time: f64, x: &[f64]) -> Trial {
         self.evaluate(x);
         let parts = &*self.parts;
@@ -271,6 +272,7 @@ impl<const D: usize> Equations for StepEquations<'_, D> {
         Trial { potential: None, broken }
     }
 
+    #[inline(never)]
     fn residual(&mut self, _time: f64, x: &[f64], residual: &mut [f64]) -> f64 {
         self.evaluate(x);
         let (scheme, split) = (self.scheme, self.velocities());
@@ -296,6 +298,7 @@ impl<const D: usize> Equations for StepEquations<'_, D> {
         if largest == 0.0 { 0.0 } else { largest / *size }
     }
 
+    #[inline(never)]
     fn linearise(&mut self, _time: f64, x: &[f64], _definite: bool) -> Result<(), LinearError> {
         self.evaluate(x);
         let scheme = self.scheme;
@@ -313,6 +316,7 @@ impl<const D: usize> Equations for StepEquations<'_, D> {
         }
     }
 
+    #[inline(never)]
     fn solve(
         &mut self,
         right: &[f64],

@@ -342,6 +342,7 @@ impl<const D: usize> ThetaScheme for Upwind<D> {
         found.unwrap_or_default()
     }
 
+    #[inline(never)]
     fn kinetic_distance(&self, one: &[f64], other: &[f64]) -> f64 {
         let velocities = [one, other].map(|state| self.columns(state).velocity);
         kinetic_distance(velocities, |a| self.mass(a))
