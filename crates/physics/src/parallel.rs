@@ -93,7 +93,8 @@ pub fn for_each_part<P: Parts>(count: usize, parts: P, body: impl Fn(usize, P) +
 /// A thread that has nothing to do takes a part of what is left, long at first and short in the end, so that
 /// all of them end together and rarely wait for one another.
 ///
-/// Bodies are called through a pointer, so that this is compiled once for arrays of a kind and not for every loop, but for those over spans.
+/// Bodies are called through a pointer, so that this is compiled once for arrays of a kind and not for every loop, but
+/// for those over spans.
 fn hand_out<P: Parts>(
     count: usize,
     [grain, work]: [usize; 2],

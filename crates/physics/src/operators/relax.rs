@@ -17,11 +17,10 @@ const MOST: f64 = 0.1;
 
 /// Moves those particles that are `free` apart from their neighbours, as fluids are shifted:
 /// `X_a += - beta dx^2 sum_b w_b (grad_a W_ab - grad_a W_ab at the sites)`, by a tenth of the spacing
-/// dx at most, `steps` times. At the `sites` of the lattice that the particles come from nothing
-/// moves, near a boundary neither, where the sum would push outwards. The kernel is one of Wendland's,
-/// under which particles do not pair. A step to where a particle does not stay is left out: `stays` is asked
-/// once for each free particle and step, with where it would be in m. Volumes
-/// and weights stay. The same particles give the same places, whatever the threads.
+/// dx at most, `steps` times. At the `sites` of the lattice that the particles come from nothing moves, near a boundary
+/// neither, where the sum would push outwards. The kernel is one of Wendland's, under which particles do not pair. A
+/// step to where a particle does not stay is left out: `stays` is asked once for each free particle and step, with
+/// where it would be in m. Volumes and weights stay. The same particles give the same places, whatever the threads.
 ///
 /// # Errors
 /// Those of [`search`].
