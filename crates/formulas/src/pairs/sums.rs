@@ -3,7 +3,7 @@
 //! Where a side ends in a number, it is 1 for neighbours of the same continuum and walls and 0 for others,
 //! which add nothing.
 
-use super::fluid::FluidSide;
+use super::fluid::{FluidSide, Side};
 use super::{Components, MovingPair, Of, One, PairLaw, Square, difference};
 use crate::kernels::{Kernel, Needs};
 use crate::power::integer_power;
@@ -213,6 +213,15 @@ impl<const D: usize> Background<D> {
     /// That of forces with a kernel and a smoothing length in m: it sees the nearest neighbours alone.
     pub fn of(kernel: Kernel, smoothing_length: f64) -> Self {
         Self { kernel, smoothing_length: 0.5 * smoothing_length }
+    }
+
+    /// What makes an acceleration of the sum, `-p0_a / rho_a^2` with `p0_a = min(10 |p_a|, f rho_0 c^2)`, of the side of a
+    /// particle, of `f` and of `rho_0` in kg/m^3 and `c` in m/s at rest; in m^5/(kg s^2).
+    #[inline]
+    pub fn scale<T: Number>(side: &Side<T, D>, most: f64, [density, wave_speed]: [T; 2]) -> T {
+        let bound = T::from(most) * (density * (wave_speed * wave_speed));
+        let own = T::from(10.0) * side.pressure.abs();
+        -T::select(own.less(bound), own, bound) / (side.density * side.density)
     }
 }
 

@@ -12,7 +12,6 @@ use piola_formulas::{Number, fluid};
 
 use super::super::escape::Room;
 use super::super::ledger::DRIFTING;
-use super::super::shifting::SHARE;
 use super::super::{AtRest, Continuum};
 use super::walls::{forces, total};
 use crate::schemes::device::{Recorded as Vector, one, square, take};
@@ -322,15 +321,10 @@ impl<const D: usize> Plan<D> {
             .close(&["step"], &read, &[own("push", D)], |sum, mut x| {
                 let step = one(&mut x);
                 let me: Side<Traced, D> = side(&mut x);
-                let [density, wave_speed] = self.rest(&mut x);
+                let scale = Background::scale(&me, most, self.rest(&mut x));
                 let zero = Traced::from(0.0);
                 let spared = if self.spares { one(&mut x) } else { zero };
-                let size = Traced::select(me.pressure.below(0.0), -me.pressure, me.pressure);
-                let bound = Traced::from(most) * (density * (wave_speed * wave_speed));
-                let own = Traced::from(SHARE) * size;
-                let background = Traced::select(own.less(bound), own, bound);
-                let scale = -background / (me.density * me.density);
-                let is_pushed = size.above(0.0) & spared.below(0.5);
+                let is_pushed = me.pressure.abs().above(0.0) & spared.below(0.5);
                 let pushed = |part: &Traced| *part * scale * (step * 0.5);
                 sum.iter().map(|part| Traced::select(is_pushed, pushed(part), zero)).collect()
             })

@@ -6,9 +6,6 @@ use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::transport_velocity::{AtRest, Common, Shifting};
 use crate::{Vector, parallel};
 
-/// Background pressure in units of the size of a particle's own.
-pub(in super::super) const SHARE: f64 = 10.0;
-
 impl<const D: usize> Common<D> {
     /// Puts the deviations of GTVF into the sides, which have been loaded, and into the `state` that they
     /// were loaded from: what a background pressure does in half of a step of `step` s,
@@ -48,8 +45,7 @@ impl<const D: usize> Common<D> {
         let source = (self.sides.as_slice(), &self.continua);
         let (mut sum, block) = (Vector::zeros(), &mut NeighborBlock::default());
         add_at(support, &Term { law, source, among: Among::All }, place, block, &mut sum);
-        let AtRest { density, wave_speed } = self.at_rest(number);
-        let background = (SHARE * me.pressure.abs()).min(most * (density * wave_speed.powi(2)));
-        sum * (-background / (me.density * me.density))
+        let AtRest { density, wave_speed } = *self.at_rest(number);
+        sum * Background::scale(me, most, [density, wave_speed])
     }
 }

@@ -5,6 +5,5 @@ mod background;
 mod iterative;
 mod sun;
 
-pub(super) use background::SHARE;
 pub(super) use iterative::Iteration;
 pub(super) use sun::Speed;
